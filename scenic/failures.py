@@ -17,6 +17,7 @@ from scenic.language.errors import (
 from scenic.language.spans import Span
 from scenic.language.spelling import nearest_attribute
 from scenic.runtime.ground.context import current
+from scenic.runtime.ground.missing_items import missing_item
 from scenic.runtime.ground.reported_places import Place, reported
 from scenic.runtime.values.random_base import is_random
 
@@ -50,12 +51,13 @@ def diagnose(error: BaseException) -> Diagnostic | None:
             help="make the dictionary itself random: `Uniform(d)[key]`, or choose a value: `Uniform(*d.values())`",
         )
     near = nearest_attribute(error)
+    hint = f"did you mean `{near}`?" if near else missing_item(error, current.get())
     diagnostic = Diagnostic(
         "SC400",
         f"{type(error).__name__}: {error}",
         place.span,
         filename=place.filename,
-        help=f"did you mean `{near}`?" if near else "the program raised this exception while it ran",
+        help=hint or "the program raised this exception while it ran",
     )
     return _with_origin(diagnostic, error)
 

@@ -19,6 +19,8 @@ class Finding(Exception):
     severity = Severity.ERROR
     labels: tuple[Label, ...] = ()
     """Further places that take part in it."""
+    argument: str | None = None
+    """The parameter, of the behavior that is run, whose argument is wrong."""
 
     def __init__(
         self,

@@ -21,7 +21,7 @@ _MOST_NAMES: Final = 5
 
 
 def map_findings(tree: ast.Module, source: Source) -> Iterator[Diagnostic]:
-    """Reports that ``param map = localPath('...')`` names no file, or one that is not a map that can be read.
+    """Reports that ``param map = localPath('...')`` or an absolute path names no file, or one that is not a map that can be read.
 
     Other paths are relative to a working directory that is not known here, and not looked at.
     """
@@ -32,7 +32,7 @@ def map_findings(tree: ast.Module, source: Source) -> Iterator[Diagnostic]:
         if not isinstance(statement, scenic.Param):
             continue
         for item in statement.items:
-            name = _local_path(item.value) if item.name == "map" else None
+            name = _path(item.value) if item.name == "map" else None
             wrong = None if name is None else _wrong(os.path.normpath(os.path.join(folder, name)), name)
             if wrong is not None:
                 message, advice = wrong
@@ -41,9 +41,11 @@ def map_findings(tree: ast.Module, source: Source) -> Iterator[Diagnostic]:
                 )
 
 
-def _local_path(value: ast.expr) -> str | None:
-    """Return the text in ``localPath('...')``; ``None`` of other values."""
+def _path(value: ast.expr) -> str | None:
+    """Return the text in ``localPath('...')``, or an absolute path; ``None`` of other values."""
     match value:
+        case ast.Constant(value=str() as text) if os.path.isabs(text) and "\0" not in text:
+            return text
         case ast.Call(func=ast.Name(id="localPath"), args=[ast.Constant(value=str() as text)]) if (
             "\0" not in text
         ):
@@ -69,6 +71,8 @@ def _wrong(path: str, name: str) -> tuple[str, str] | None:
 def _beside(path: str) -> str:
     """A hint at the maps in the folder of one that is missing."""
     folder, file_name = os.path.split(path)
+    if not os.path.isdir(folder):
+        return f"there is no folder '{folder}'"
     try:
         names = sorted(name for name in os.listdir(folder) if name.endswith(_SUFFIX))
     except OSError:

@@ -26,7 +26,8 @@ from scenic.runtime.dynamics.chosen_draws import Sourcing
 from scenic.runtime.dynamics.copies import Copies
 from scenic.runtime.dynamics.run import Ending, Run
 from scenic.runtime.elements.sensors import Sensor
-from scenic.runtime.ground.reported_places import is_library, reported
+from scenic.runtime.ground.missing_items import missing_item
+from scenic.runtime.ground.reported_places import Place, argument_span, is_library, reported
 from scenic.runtime.instances.properties import Finals
 from scenic.runtime.python.random_state import is_as, preserved, restore, seed_globals, states
 from scenic.runtime.scenes.scene import Scene
@@ -331,7 +332,7 @@ class Simulation(ABC):
             traceback = traceback.tb_next
         own_place = context.program_place(error.__traceback__), context.filename
         if own_place[0] is None and self._run.failed_agent is not None:
-            own_place = self.place_of(self._run.failed_agent)
+            own_place = self._place_of_behavior(self._run.failed_agent, error)
         if isinstance(error, Located):
             raise_place = error.span or place, error.filename or filename
             (error.span, error.filename), error.labels = reported(raise_place, own_place)
@@ -344,8 +345,7 @@ class Simulation(ABC):
             hint = "the program raised this exception during a simulation"
             if labels and is_library(labels[0].filename or ""):
                 hint = "the library raised this exception during a simulation: check what it is given here"
-            if near:
-                hint = f"did you mean `{near}`?"
+            hint = f"did you mean `{near}`?" if near else missing_item(error, context) or hint
             if isinstance(error, StuckBehaviorError):
                 words, hint = str(error), "if it only computes for long, allow it more time (`--step-limit`)"
             diagnostic = Diagnostic("SC400", words, span, filename=filename, help=hint, labels=labels)
@@ -353,6 +353,17 @@ class Simulation(ABC):
             annotate(
                 error, diagnostic, f"{filename}:{line}: raised at step {self.currentTime} of a simulation"
             )
+
+    def _place_of_behavior(self, agent: Any, error: Exception) -> Place:
+        """The argument of an agent's behavior that an exception is about; else the behavior, else the agent."""
+        behavior, context = agent.behavior, self._run.context
+        span = None if behavior is None else behavior._place
+        quotation = None if span is None else context.quote(span)
+        if span is None or quotation is None:
+            return self.place_of(agent)
+        parameters = list(behavior._definition.signature.parameters)
+        name = getattr(error, "argument", None)
+        return argument_span(span, quotation[1], parameters, name), context.filename
 
     def _details(self, error: RejectionException, place: Span | None) -> str:
         """Return the object that a rejection is about, the time and the line of the program, in words."""

@@ -84,8 +84,13 @@ def test_a_car_that_obeys_takes_the_ways_of_its_trajectory(folder: Path, traject
 
 
 def test_a_trajectory_must_be_one_that_can_be_driven(folder: Path) -> None:
-    with pytest.raises(InvalidScenarioError, match="does not follow"):
-        simulated(folder, LEFT + WEST.format(more=", trajectory=[left.endLane, own]"), "cross", 2)
+    text = LEFT + WEST.format(more=",\n    trajectory=[left.endLane, own]")
+    with pytest.raises(InvalidScenarioError, match="does not follow") as caught:
+        simulated(folder, text, "cross", 2)
+    span = caught.value.span
+    assert span is not None
+    line = text.split("\n")[span.line - 4]
+    assert line[span.column : span.end_column] == "[left.endLane, own]", "the argument is marked, not the car"
     with pytest.raises(TypeError, match="lanes or maneuvers"):
         simulated(folder, LEFT + WEST.format(more=", trajectory=own"), "cross", 2)
 

@@ -79,6 +79,11 @@ def test_maps_that_cannot_be_used_are_wrong_where_they_are_named(client: Client,
         (found,) = problems(client, uri)
         assert (found["code"], found["range"]["start"]) == ("SC620", {"line": 0, "character": 12})
         assert words in found["message"]
+    elsewhere = (tmp_path / "none" / "town.xodr").as_posix()
+    uri = (tmp_path / "absolute.scenic").as_uri()
+    client.open(uri, TEXT.replace("localPath('crossing.xodr')", repr(elsewhere)))
+    (found,) = problems(client, uri)
+    assert found["message"].startswith(f"there is no map '{elsewhere}'")
     assert client.leave() == 0
 
 

@@ -48,7 +48,7 @@ def render_missing(missing: Sequence[Exhausted], console: Console) -> None:
 def _why(missing: Exhausted) -> str:
     match missing.reason:
         case "impossible":
-            return "the requirements cannot hold together"
+            return "the requirements cannot hold together (`scenic check --deep` marks which)"
         case "time":
             return f"the time limit was reached ({missing.attempts} candidates)"
         case _:

@@ -4,7 +4,7 @@ What a behavior needs follows from the classes of the actions it takes, itself a
 """
 
 import ast
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from types import MappingProxyType
 from typing import Final
 
@@ -13,7 +13,7 @@ from scenic.compiler.checks.context import CheckContext
 from scenic.compiler.semantics.classes import LIBRARY
 from scenic.compiler.semantics.model import Model
 from scenic.compiler.semantics.symbols import Symbol, SymbolKind
-from scenic.compiler.traversal import walk
+from scenic.compiler.traversal import parts, walk
 from scenic.language.diagnostics import Diagnostic
 
 __all__ = ["check_agents"]
@@ -95,24 +95,34 @@ def _needs(model: Model, behavior: Symbol, depth: int) -> dict[str, bool]:
     if module is None or not isinstance(node, scenic.BehaviorDef) or depth > _DEEPEST:
         return {}
     home = model.beside(module)
-    guarded_parts = {id(part) for branch in walk(node) if isinstance(branch, ast.If) for part in walk(branch)}
-    needs: dict[str, bool] = {}
-    for part in walk(node):
-        inner: dict[str, bool] = {}
+
+    def needs_of_run(target: ast.expr) -> dict[str, bool]:
+        run = _behavior_of(home, target)
+        return {} if run is None or run == behavior else _needs(model, run, depth + 1)
+
+    def needs_of(part: ast.AST) -> dict[str, bool]:
+        if isinstance(part, ast.If):
+            # What both branches take is taken whatever is asked.
+            here, there = _joined(map(needs_of, part.body)), _joined(map(needs_of, part.orelse))
+            return {need: here.get(need, False) and there.get(need, False) for need in here | there}
         if isinstance(part, scenic.Take):
-            for action in part.actions:
-                cls = home.class_of(action)
-                need = None if cls is None else _need_of_action(model, cls)
-                if need is not None:
-                    inner[need] = True
-        elif isinstance(part, scenic.Do | scenic.DoChoose):
-            for target in part.targets:
-                run = _behavior_of(home, target)
-                if run is not None and run != behavior:
-                    inner |= _needs(model, run, depth + 1)
-        for need, always in inner.items():
-            needs[need] = needs.get(need, False) or (always and id(part) not in guarded_parts)
-    return needs
+            actions = map(home.class_of, part.actions)
+            needs = [_need_of_action(model, cls) for cls in actions if cls is not None]
+            return {need: True for need in needs if need is not None}
+        if isinstance(part, scenic.Do | scenic.DoChoose):
+            return _joined(map(needs_of_run, part.targets))
+        return _joined(needs_of(inner) for inner in parts(part) if not isinstance(inner, ast.expr))
+
+    return _joined(map(needs_of, node.body))
+
+
+def _joined(each: Iterable[dict[str, bool]]) -> dict[str, bool]:
+    """The needs of parts that follow each other."""
+    joined: dict[str, bool] = {}
+    for needs in each:
+        for need, always in needs.items():
+            joined[need] = joined.get(need, False) or always
+    return joined
 
 
 def _behavior_of(model: Model, target: ast.expr) -> Symbol | None:

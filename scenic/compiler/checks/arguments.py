@@ -270,13 +270,14 @@ def _no_numbers(node: ast.Call, callee: _Callee, context: CheckContext) -> Itera
         number = default.value if isinstance(default, ast.Constant) else None
         is_default = isinstance(number, int | float) and not isinstance(number, bool)
         is_default = is_default and isinstance(callee.definition, scenic.BehaviorDef)
-        if not is_default and (default is not None or name not in numeric_names):
+        is_optional = isinstance(default, ast.Constant) and number is None
+        if not is_default and ((default is not None and not is_optional) or name not in numeric_names):
             continue
         kind = context.kind_of(value)
         if (
             kind is None
             or kind.name not in _NOT_NUMBERS
-            or (kind.name == "nothing" and callee.is_here(context))
+            or (kind.name == "nothing" and (is_optional or callee.is_here(context)))
         ):
             continue
         text = context.text(value) or ""

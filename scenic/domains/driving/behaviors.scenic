@@ -78,7 +78,7 @@ behavior Walk(path, speed=Range(0.9, 1.8)):
 
 
 behavior FollowLaneBehavior(
-    target_speed=10, laneToFollow=None, is_oppositeTraffic=False, follow_gap=None, comfort=None
+    target_speed=10, laneToFollow=None, is_oppositeTraffic=False, follow_gap: float = None, comfort=None
 ):
     """Follow a lane, and at intersections go on: straight ahead if that is possible, else any way.
 
@@ -99,7 +99,7 @@ behavior FollowLaneBehavior(
     take SetThrottleAction(0), SetBrakeAction(1.0)
 
 
-behavior FollowTrajectoryBehavior(target_speed=10, trajectory=None, turn_speed=None, follow_gap=None, comfort=None):
+behavior FollowTrajectoryBehavior(target_speed=10, trajectory=None, turn_speed: float = None, follow_gap: float = None, comfort=None):
     """Follow lanes one after the other, slower in turns.
 
     Arguments:
@@ -127,7 +127,7 @@ behavior TurnBehavior(trajectory, target_speed=6):
 
 
 behavior LaneChangeBehavior(
-    laneSectionToSwitch, is_oppositeTraffic=False, target_speed=10, duration=4, follow_gap=None, comfort=None
+    laneSectionToSwitch, is_oppositeTraffic=False, target_speed=10, duration=4, follow_gap: float = None, comfort=None
 ):
     """Change to the lane of a lane section.
 
@@ -204,7 +204,7 @@ behavior DriveAvoidingCollisions(target_speed=25, avoidance_threshold=10):
     take SetThrottleAction(0), SetBrakeAction(1.0)
 
 
-behavior DriveByRulesBehavior(target_speed=None, ignore=(), follow_gap=1.5, comfort=None, trajectory=None):
+behavior DriveByRulesBehavior(target_speed: float = None, ignore=(), follow_gap=1.5, comfort=None, trajectory=None):
     """Drive by the rules of the road: speed limits, lights, stop signs, priority, pedestrians on crossings, gaps.
 
     Arguments:

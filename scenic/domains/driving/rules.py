@@ -97,10 +97,12 @@ class RulesDriver(LaneDriver):
         for name in sorted(map(str, self._ignored)):
             if name not in RULES:
                 near = nearest(name, list(RULES))
-                raise InvalidScenarioError(
+                error = InvalidScenarioError(
                     f"there is no rule {name!r} to ignore",
                     help=f"did you mean {near!r}?" if near else f"the rules are {', '.join(RULES)}",
                 )
+                error.argument = "ignore"
+                raise error
         self._halts: list[_Halt] = []
         self._marks = 0
         self._next_check = 0.0

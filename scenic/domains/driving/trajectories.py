@@ -81,9 +81,11 @@ class Route:
         elif isinstance(trajectory, list | tuple) and trajectory and all(map(_is_way, trajectory)):
             parts = trajectory
         else:
-            raise wrong_type(
+            error = wrong_type(
                 "lanes or lines in a list that is not empty, or a `Trajectory`", trajectory, "the trajectory"
             )
+            error.argument = "trajectory"
+            raise error
         self.parts = tuple(parts)
         self.lines = [_vertices(part) for part in parts]
         last = parts[-1]
@@ -125,7 +127,9 @@ class LaneRoute:
     def __init__(self, trajectory: object) -> None:
         parts = list(trajectory) if isinstance(trajectory, list | tuple) else []
         if not parts or not all(isinstance(part, Lane | Maneuver) for part in parts):
-            raise wrong_type("lanes or maneuvers in a list that is not empty", trajectory, "the trajectory")
+            error = wrong_type("lanes or maneuvers in a list that is not empty", trajectory, "the trajectory")
+            error.argument = "trajectory"
+            raise error
         lanes: list[Lane] = []
         for part in parts:
             ways = (part,) if isinstance(part, Lane) else (part.startLane, part.connectingLane, part.endLane)
@@ -133,10 +137,12 @@ class LaneRoute:
         for before, after in pairwise(lanes):
             if not any(after in _taken_by(way) for way in _ways_from(before)):
                 ends = ", ".join(way.endLane.uid for way in _ways_from(before)) or "none"
-                raise InvalidScenarioError(
+                failure = InvalidScenarioError(
                     f"the trajectory cannot be driven: {after.uid} does not follow {before.uid}",
                     help=f"lanes that follow {before.uid}: {ends}",
                 )
+                failure.argument = "trajectory"
+                raise failure
         self.lanes: tuple[Lane, ...] = tuple(lanes)
         self._count = 0
         """The number of lanes that have been taken."""

@@ -15,7 +15,7 @@ from scenic.language.diagnostics import Diagnostic
 from scenic.language.errors import InvalidScenarioError, ScenicSyntaxError, ScenicTypeError
 from scenic.language.spans import Span
 from scenic.runtime.ground.context import current, here
-from scenic.runtime.ground.reported_places import is_library
+from scenic.runtime.ground.reported_places import argument_span, is_library
 from scenic.runtime.instances.objects import Point
 from scenic.runtime.regions.base import Region
 from scenic.runtime.values.describing import describe, wrong_type
@@ -67,7 +67,7 @@ class Definition:
 class Invocable:
     """Base of behaviors, monitors and modular scenarios. Its attributes are the program's own names."""
 
-    __slots__ = ("__dict__", "__weakref__", "_activation", "_arguments")
+    __slots__ = ("__dict__", "__weakref__", "_activation", "_arguments", "_place")
     _definition: ClassVar[Definition]
     _kind: ClassVar[str] = "invocable"
 
@@ -103,6 +103,7 @@ class Invocable:
         bound.apply_defaults()
         _check_numbers(self._definition, bound.arguments)
         self._arguments = bound
+        self._place = _place_in_program(self._definition)
         self._activation: Any = None
         self.__dict__.update(bound.arguments)
 
@@ -122,6 +123,7 @@ class Invocable:
         """Return the same with sampled arguments and attributes."""
         copy = object.__new__(type(self))
         copy._activation = None
+        copy._place = self._place
         if hasattr(sample, "remember"):
             # Local functions lead back to the instance.
             sample.remember(self, copy)
@@ -138,17 +140,32 @@ class Invocable:
 _NO_NUMBERS: Final = (str, bytes, list, tuple, dict, set, frozenset, type(None), Point, Region, Vector)
 
 
+def _place_in_program(definition: Definition) -> Span | None:
+    """Return where the program's own file makes an instance of the library: what goes wrong in it is reported there."""
+    body, context = definition.body, current.get()
+    if context is None or body is None or not is_library(body.__code__.co_filename):
+        return None
+    return context.own_place()
+
+
 def _check_numbers(definition: Definition, arguments: Mapping[str, Any]) -> None:
-    """Raise `ScenicTypeError` for an argument of a behavior of the library that is no number, where its default is one."""
+    """Raise `ScenicTypeError` for an argument of a behavior of the library that is no number, where one belongs."""
     body = definition.body
     if body is None or not is_library(body.__code__.co_filename):
         return
     for name, parameter in definition.signature.parameters.items():
         default = parameter.default
         value = arguments.get(name, default)
-        if type(default) in (int, float) and isinstance(value, _NO_NUMBERS):
+        is_number = type(default) in (int, float) or parameter.annotation is float
+        if is_number and value is not default and isinstance(value, _NO_NUMBERS):
             error = wrong_type("a number", value, f"`{name}` of {definition.name}")
-            error.help = f"give a number; the default is {default}"
+            error.help = "give a number" + ("" if default is None else f"; the default is {default}")
+            error.argument = name
+            context = current.get()
+            quotation = None if context is None or error.span is None else context.quote(error.span)
+            if error.span is not None and quotation is not None:
+                parameters = list(definition.signature.parameters)
+                error.span = argument_span(error.span, quotation[1], parameters, name)
             raise error
 
 

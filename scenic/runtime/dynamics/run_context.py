@@ -15,8 +15,15 @@ class RunContext(Context):
     """The context of a running simulation: distributions draw at once."""
 
     def __init__(self, run: "Run", locate: Locator, name: Namer, *, mode_2d: bool) -> None:
-        super().__init__(locate=locate, name=name, generator=run.draws, mode_2d=mode_2d)  # type: ignore[arg-type] # it has `random`
-        self.filename = run.program.context.filename
+        program = run.program.context
+        super().__init__(
+            locate=locate,
+            name=name,
+            quote=program.quote,
+            generator=run.draws,  # type: ignore[arg-type] # it has `random`
+            mode_2d=mode_2d,
+        )
+        self.filename = program.filename
         self.run = run
         self.guarding = False
         """True if a guard, or the condition of an interrupt or ``until``, is being evaluated."""

@@ -54,6 +54,9 @@ def test_what_has_no_wheel_cannot_drive(cls: str, behavior: str, tmp_path: Path)
 def test_vehicles_cannot_walk(tmp_path: Path) -> None:
     expected = ["objects of the class `Tram` cannot walk, as `WalkTo` does"]
     assert found(tmp_path, "new Tram with behavior WalkTo(ego)") == expected
+    # It walks whatever it finds where it stands.
+    expected = ["objects of the class `Tram` cannot walk, as `WalkForwardBehavior` does"]
+    assert found(tmp_path, "new Tram with behavior WalkForwardBehavior()") == expected
 
 
 @pytest.mark.parametrize(

@@ -101,6 +101,23 @@ def test_mistakes(text: str, code: str, message: str | None) -> None:
     assert found.help is None or (found.help and not found.help.endswith("."))
 
 
+@pytest.mark.parametrize(
+    ("text", "hint"),
+    [
+        ("xs = [1, 2]\ny = xs[3]", "`xs` has 2 items: the last one is `xs[1]`"),
+        ("xs = ()\ny = xs[0]", "`xs` is empty"),
+        ("class A:\n    d: {'left': 1}\na = new A\ny = a.d['lefft']", "did you mean 'left'?"),
+        ("d = {1: 2}\ny = d[7]", "`d` has 1 key: 1"),
+        ("def f():\n    return [1]\ny = f()[2]", "the program raised this exception while it ran"),
+        ("def f(xs):\n    return xs[4]\ny = f('text')", "the program raised this exception while it ran"),
+    ],
+)
+def test_items_that_are_not_there_are_compared_with_those_that_are(text: str, hint: str) -> None:
+    found = diagnose(failure(text))
+    assert found is not None
+    assert (found.code, found.help) == ("SC400", hint)
+
+
 def test_a_missing_new_before_at() -> None:
     found = diagnose(failure("ego = Object at (1, 2)"))
     assert found is not None
