@@ -32,17 +32,6 @@ def _place(request: "SampleRequest") -> Path:
     return Path(request.output or "-")
 
 
-def _pictures(request: "SampleRequest") -> sinks.Sink:
-    return sinks.images(
-        Path(request.png or ""),
-        request.path.stem,
-        request.count,
-        request.image_size,
-        {**request.outlook, "workspace": request.frame == "workspace"},
-        request.first,
-    )
-
-
 @dataclass(frozen=True, slots=True)
 class SampleSink(SinkPart):
     """A place where scenes go.
@@ -122,7 +111,14 @@ SINKS: Final[Mapping[str, SampleSink]] = MappingProxyType(
             _ALONE,
             endings=(".png",),
             extra="view",
-            taker=_pictures,
+            taker=lambda request: sinks.images(
+                Path(request.png or ""),
+                request.path.stem,
+                request.count,
+                request.image_size,
+                {**request.outlook, "workspace": request.frame == "workspace"},
+                request.first,
+            ),
         ),
         "profile": SampleSink(
             "--profile", refuses=_SHARED | _RESUMED | {"show_params", "sampler", "approximate"}

@@ -31,10 +31,6 @@ class SceneryError(Located):
     code = "SC604"
 
 
-def _usual_sun() -> Array:
-    return np.asarray(np.array(_SUN) / np.linalg.norm(_SUN))
-
-
 @dataclass(frozen=True, slots=True)
 class Scenery:
     """Sun, sky and ground of one picture; colours are sRGB.
@@ -51,7 +47,7 @@ class Scenery:
 
     """
 
-    sun: Array = field(default_factory=_usual_sun)
+    sun: Array = field(default_factory=lambda: np.asarray(np.array(_SUN) / np.linalg.norm(_SUN)))
     sunlight: float = 1.0
     skylight: float = 1.0
     exposure: float = 1.0

@@ -28,10 +28,6 @@ _SHIFT: Final = 0.37
 """Faces seldom lie at this part of a cell, where rounding would decide."""
 
 
-def _checker(places: Singles) -> Singles:
-    return np.asarray(np.floor(places).astype(np.int32).sum(axis=1) & 1, np.float32)
-
-
 def _stripes(places: Singles) -> Singles:
     return np.asarray(np.floor(places[:, 0]).astype(np.int32) & 1, np.float32)
 
@@ -68,7 +64,7 @@ def _hashed(cells: npt.NDArray[np.int64]) -> Singles:
 
 
 PATTERNS: Final[Mapping[str, Callable[[Singles], Singles]]] = {
-    "checker": _checker,
+    "checker": lambda places: np.asarray(np.floor(places).astype(np.int32).sum(axis=1) & 1, np.float32),
     "stripes": _stripes,
     "noise": _noise,
 }

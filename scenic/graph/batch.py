@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from scenic.graph.domain import Domain
 from scenic.graph.draws import Source
-from scenic.graph.kinds import Codec, Column, Kind, boxed
+from scenic.graph.kinds import Codec, Column, boxed
 from scenic.graph.node import Graph, Node
 from scenic.graph.operation import FAULT, OK, Call, Status
 from scenic.graph.schedule import (
@@ -396,7 +396,7 @@ class Batch:
         faulty_lanes = np.zeros(lanes, dtype=np.bool_)
         rejections = np.zeros(lanes, dtype=np.bool_)
         error: Exception | None = None
-        blank = _blank(step.kind)
+        blank = None if step.kind.is_boxed else np.zeros(step.kind.trailing, dtype=step.kind.dtype)
         plain = [decode(kind, column) for kind, column in zip(call.kinds, columns, strict=True)]
         if bad is None and step.kind.is_boxed and step.operation.together is not None:
             spread = (items if len(items) == lanes else items * lanes for items in plain)
@@ -438,10 +438,6 @@ def _combined(statuses: Iterable[Status | None]) -> Status | None:
         if status is not None:
             result = status if result is None else np.maximum(result, status)
     return result
-
-
-def _blank(kind: Kind) -> Any:
-    return None if kind.is_boxed else np.zeros(kind.trailing, dtype=kind.dtype)
 
 
 __all__ = ["Batch"]

@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 
 from scenic.compiler.semantics.classes import Member
-from scenic.compiler.semantics.kinds import ValueKind
 from scenic.compiler.semantics.symbols import Symbol, SymbolKind, symbol_of_exported
 from scenic.ide.expressions import expression, operand_before
 from scenic.ide.parameters import settings
@@ -45,7 +44,7 @@ def members(
     kind = None
     if owner is None or owner.name in NAMES:
         kind = model.kind_of(node)
-        if owner is None and (_is_instance(kind) or text == "self"):
+        if owner is None and ((kind is not None and kind.name in INSTANCES) or text == "self"):
             owner = Symbol("Object", SymbolKind.CLASS)  # Of whatever class, it is an object.
     cls = model.class_of_symbol(owner)
     if cls is not None and cls.members:
@@ -55,10 +54,6 @@ def members(
         for name in MEMBERS.get(of_kind, ()):
             completion_kind = CompletionKind.METHOD if name in LIFTED_METHODS else CompletionKind.ATTRIBUTE
             yield Completion(name, completion_kind, name, 3, of_kind)
-
-
-def _is_instance(kind: ValueKind | None) -> bool:
-    return kind is not None and kind.name in INSTANCES
 
 
 def _of_class(snapshot: Snapshot, member: Member) -> Completion:

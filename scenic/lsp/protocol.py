@@ -164,7 +164,7 @@ class Protocol(LanguageServerProtocol):
         if self.stage is Stage.RUNNING and method == types.INITIALIZE:
             raise JsonRpcInvalidRequest("the server is already initialized")
         self._get_handler(method)
-        if _is_notification(method):
+        if method in types.METHOD_TO_TYPES and not _is_request(method):
             raise JsonRpcInvalidRequest(f"`{method}` is a notification, and has no answer")
 
     def _notification(self, method: str, params: object) -> None:
@@ -328,10 +328,6 @@ class Protocol(LanguageServerProtocol):
 
 def _is_request(method: str) -> bool:
     return types.METHOD_TO_TYPES.get(method, (None, None))[1] is not None
-
-
-def _is_notification(method: str) -> bool:
-    return method in types.METHOD_TO_TYPES and not _is_request(method)
 
 
 def fault(what: str, error: BaseException) -> JsonRpcInternalError:

@@ -65,10 +65,6 @@ def _speed(text: str) -> str | None:
     return None if text in ("no limit", "undefined") else _number(text, 0.0)
 
 
-def _id(text: str) -> str | None:
-    return None if text.strip() else "empty"
-
-
 def _country(text: str) -> str | None:
     is_code = len(text) in (2, 3) and text.isalpha() and text.isupper()
     return None if is_code or text in _COUNTRIES else "not the code of a country"
@@ -110,7 +106,7 @@ _TYPES: Final[Mapping[str, Callable[[str], str | None]]] = MappingProxyType(
         "integer": _integer,
         "count": _count,
         "speed": _speed,
-        "id": _id,
+        "id": lambda text: None if text.strip() else "empty",
         "country": _country,
         "orientation": _one_of("+|-|none"),
         "yes no": _one_of("yes|no"),

@@ -99,10 +99,6 @@ def _multiply_inverse(_payload: object, result: Bounds, a: Bounds, b: Bounds) ->
     return [collapsed(intervals.divide(exact, b), a), collapsed(intervals.divide(exact, a), b)]
 
 
-def _divide_bounds(_payload: object, a: Bounds, b: Bounds) -> Bounds:
-    return intervals.divide(a, b)
-
-
 def _divide_inverse(_payload: object, result: Bounds, a: Bounds, b: Bounds) -> list[Bounds]:
     exact = before_rounding(result)
     return [intervals.multiply(exact, b), collapsed(intervals.divide(a, exact), b)]
@@ -112,16 +108,8 @@ def _negative_bounds(_payload: object, a: Bounds) -> Bounds:
     return intervals.negative(a)
 
 
-def _negative_inverse(_payload: object, result: Bounds, _a: Bounds) -> list[Bounds]:
-    return [intervals.negative(result)]
-
-
 def _positive_bounds(_payload: object, a: Bounds) -> Bounds:
     return a
-
-
-def _positive_inverse(_payload: object, result: Bounds, _a: Bounds) -> list[Bounds]:
-    return [result]
 
 
 def _absolute_bounds(_payload: object, a: Bounds) -> Bounds:
@@ -267,7 +255,7 @@ OPERATIONS = (
         _divide,
         "The quotient of two numbers, or of a vector by a number; dividing by zero is a fault.",
         python=operator.truediv,
-        bounds=where_defined(_divide_bounds, (True, False)),
+        bounds=where_defined(lambda _payload, a, b: intervals.divide(a, b), (True, False)),
         inverse=_divide_inverse,
         solver=componentwise(lambda _terms, a, b: a / b, (True, False)),
         faults=may_divide_by_zero,
@@ -282,7 +270,7 @@ OPERATIONS = (
         "The opposite number or vector.",
         python=operator.neg,
         bounds=where_defined(_negative_bounds, (True,)),
-        inverse=_negative_inverse,
+        inverse=lambda _payload, result, _a: [intervals.negative(result)],
         solver=componentwise(lambda _terms, a: -a, (True,)),
         stacks=True,
         scalar=_negative_scalar,
@@ -294,7 +282,7 @@ OPERATIONS = (
         "The number or vector itself; a truth value becomes an integer.",
         python=operator.pos,
         bounds=where_defined(_positive_bounds, (True,)),
-        inverse=_positive_inverse,
+        inverse=lambda _payload, result, _a: [result],
         solver=componentwise(lambda _terms, a: a, (True,)),
         stacks=True,
     ),

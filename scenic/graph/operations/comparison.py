@@ -67,10 +67,6 @@ def _all_components(parts: Column) -> Column:
     return result
 
 
-def _differs(call: Call, a: Column, b: Column) -> Column:
-    return ~_same(call, a, b)
-
-
 # Bounds, inverses and terms of the orders. ``a > b`` is read as ``b < a``.
 
 
@@ -154,14 +150,6 @@ def _differs_bounds(_payload: object, a: Bounds, b: Bounds) -> Bounds | None:
     return None if known is None else truth(known[1], known[0])
 
 
-def _equal_inverse(_payload: object, result: Bounds, a: Bounds, b: Bounds) -> Sequence[Bounds | None]:
-    return _meet_where(certain(result)[0], a, b)
-
-
-def _differs_inverse(_payload: object, result: Bounds, a: Bounds, b: Bounds) -> Sequence[Bounds | None]:
-    return _meet_where(certain(result)[1], a, b)
-
-
 def _meet_where(equal: Mask, a: Bounds, b: Bounds) -> Sequence[Bounds | None]:
     if a.lower.shape[1:] != b.lower.shape[1:] or a.lower.shape[1:] == (4,):
         return [None, None]
@@ -176,10 +164,6 @@ def _equal_solver(terms: Terms, _payload: object, a: object, b: object) -> Any:
     if len(a) == 4:
         return terms.fresh(Kind.BOOLEAN)
     return conjunction([x == y for x, y in zip(a, b, strict=True)])
-
-
-def _differs_solver(terms: Terms, payload: object, a: object, b: object) -> Any:
-    return ~_equal_solver(terms, payload, a, b)
 
 
 # Minimum and maximum.
@@ -200,14 +184,6 @@ def _extreme(better: Callable[[Any, Any], Any]) -> Callable[..., Column]:
         return result
 
     return batch
-
-
-def _minimum_bounds(_payload: object, *operands: Bounds) -> Bounds | None:
-    return _fold(intervals.minimum, operands)
-
-
-def _maximum_bounds(_payload: object, *operands: Bounds) -> Bounds | None:
-    return _fold(intervals.maximum, operands)
 
 
 def _fold(function: Callable[[Bounds, Bounds], Bounds], operands: Sequence[Bounds]) -> Bounds | None:
@@ -315,19 +291,19 @@ OPERATIONS = (
         "Whether a == b; vectors by components, orientations up to the sign of the quaternion.",
         python=_truth_of(operator.eq),
         bounds=_equal_bounds,
-        inverse=_equal_inverse,
+        inverse=lambda _payload, result, a, b: _meet_where(certain(result)[0], a, b),
         solver=_equal_solver,
         stacks=True,
     ),
     Operation(
         "not equal",
         always(Kind.BOOLEAN),
-        _differs,
+        lambda call, a, b: ~_same(call, a, b),
         "Whether a != b.",
         python=_truth_of(operator.ne),
         bounds=_differs_bounds,
-        inverse=_differs_inverse,
-        solver=_differs_solver,
+        inverse=lambda _payload, result, a, b: _meet_where(certain(result)[1], a, b),
+        solver=lambda terms, payload, a, b: ~_equal_solver(terms, payload, a, b),
         stacks=True,
     ),
     Operation(
@@ -336,7 +312,7 @@ OPERATIONS = (
         _extreme(operator.lt),
         "Python's `min` of two or more values, or of the items of one.",
         python=min,
-        bounds=_minimum_bounds,
+        bounds=lambda _payload, *operands: _fold(intervals.minimum, operands),
         inverse=_minimum_inverse,
         solver=_extreme_solver(operator.lt),
         stacks=True,
@@ -347,7 +323,7 @@ OPERATIONS = (
         _extreme(operator.gt),
         "Python's `max` of two or more values, or of the items of one.",
         python=max,
-        bounds=_maximum_bounds,
+        bounds=lambda _payload, *operands: _fold(intervals.maximum, operands),
         inverse=_maximum_inverse,
         solver=_extreme_solver(operator.gt),
         stacks=True,

@@ -13,10 +13,6 @@ from scenic.graph.operation import Call, Operation, Terms, always, by_lane
 from scenic.graph.operations.narrowing import before_rounding, certain, truth, where
 
 
-def _float(_call: Call, number: Column) -> Column:
-    return number.astype(np.float64)
-
-
 def _len(_call: Call, value: Column) -> Column:
     return np.full(1, value.shape[1], dtype=np.int64)
 
@@ -44,18 +40,6 @@ def _getitem(call: Call, container: Column, item: Column) -> Column:
 def _truth(call: Call, value: Column) -> Column:
     # A vector is true whatever its components: it has three items. So is an orientation, like any other object.
     return call.everywhere(value=True) if call.kinds[0].trailing else value != 0
-
-
-def _float_bounds(_payload: object, number: Bounds) -> Bounds | None:
-    return number if number.lower.ndim == 1 else None
-
-
-def _float_inverse(_payload: object, result: Bounds, _number: Bounds) -> list[Bounds]:
-    return [before_rounding(result)]
-
-
-def _float_solver(terms: Terms, _payload: object, number: object) -> Any:
-    return terms.number(number)
 
 
 def _len_bounds(_payload: object, value: Bounds) -> Bounds | None:
@@ -108,12 +92,12 @@ OPERATIONS = (
     Operation(
         "float",
         always(Kind.SCALAR),
-        _float,
+        lambda _call, number: number.astype(np.float64),
         "Python's `float`.",
         python=float,
-        bounds=_float_bounds,
-        inverse=_float_inverse,
-        solver=_float_solver,
+        bounds=lambda _payload, number: number if number.lower.ndim == 1 else None,
+        inverse=lambda _payload, result, _number: [before_rounding(result)],
+        solver=lambda terms, _payload, number: terms.number(number),
         stacks=True,
     ),
     Operation("str", always(Kind.OTHER), by_lane, "Python's `str`.", python=str),

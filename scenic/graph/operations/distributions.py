@@ -210,22 +210,10 @@ def _constants(operands: Sequence[Node], _payload: object) -> Node | None:
     return make_node(LOOKUP, [index], table)
 
 
-def _may_be_endless(operands: Sequence[Node], _payload: object) -> bool:
-    """Return whether an end of a range may be infinite."""
-    return not (is_finite(operands[1]) and is_finite(operands[2]))
-
-
 def _may_be_narrow(operands: Sequence[Node], _payload: object) -> bool:
     """Return whether a deviation may be zero."""
     bounds = overall(operands[2])
     return bounds is None or bool(bounds.lower[0] <= 0 <= bounds.upper[0])
-
-
-def _may_be_large(operands: Sequence[Node], _payload: object) -> bool:
-    """Return whether an end of a range of integers may be too large for 64 bits."""
-    return any(
-        operand.kind is Kind.SCALAR and not _is_below(overall(operand), 2.0**61) for operand in operands[1:]
-    )
 
 
 def _is_below(bounds: Bounds | None, limit: float) -> bool:
@@ -236,10 +224,6 @@ def _may_be_empty(operands: Sequence[Node], _payload: object) -> bool:
     """Return whether a range of integers may hold none."""
     low, high = (overall(operand) for operand in operands[1:])
     return low is None or high is None or bool(np.ceil(low.upper[0]) > np.floor(high.lower[0]))
-
-
-def _select_kind(operands: Any, payload: Any) -> Kind:
-    return joined_kind(operands[1:], payload)
 
 
 def _select(call: Call, index: Column, *options: Column) -> Column:
@@ -260,10 +244,6 @@ def _select(call: Call, index: Column, *options: Column) -> Column:
 
 def _are_alike(call: Call, options: Sequence[Column]) -> bool:
     return all(kind is call.kind for kind in call.kinds[1:]) and all(len(option) == 1 for option in options)
-
-
-def _python_select(index: int, *options: Any) -> Any:
-    return options[index]
 
 
 # Bounds, inverses and terms.
@@ -364,10 +344,6 @@ def _normal_inverse(
         intervals.subtract(before_rounding(result), product),
         intervals.divide(shift, standard_normal),
     ]
-
-
-def _normal_solver(terms: Terms, _payload: object, _axis: object, _mean: object, _deviation: object) -> Any:
-    return terms.fresh(Kind.SCALAR)
 
 
 def _standardised(payload: _Window, mean: Bounds, deviation: Bounds) -> tuple[Floats, Floats, Floats, Mask]:
@@ -514,14 +490,6 @@ def _drawn(terms: Terms, first: int, cumulative: _Shares) -> Any:
     return value
 
 
-def _choice_bounds(payload: _Shares, axis: Bounds) -> Bounds:
-    return _position_bounds(axis, payload)
-
-
-def _choice_inverse(payload: _Shares, result: Bounds, _axis: Bounds) -> list[Bounds]:
-    return [_position_inverse(result, payload)]
-
-
 def _choice_solver(terms: Terms, payload: _Shares, _axis: object) -> Any:
     value = terms.fresh(Kind.INTEGER)
     weights = np.diff(np.asarray(payload, dtype=np.float64), prepend=0.0)
@@ -540,14 +508,6 @@ def _between_options(cumulative: _Shares) -> Floats:
     return np.asarray(limits[(limits > 0) & (limits < limits[-1])])
 
 
-def _choice_cuts(payload: _Shares, _operands: Sequence[Node]) -> Floats:
-    return _between_options(payload)
-
-
-def _weighted_cuts(payload: _Weighted, _operands: Sequence[Node]) -> Floats:
-    return _between_options(payload[1])
-
-
 def _discrete_cuts(_payload: object, operands: Sequence[Node]) -> Floats | None:
     low, high = operands[1:]
     if not (low.is_constant and high.is_constant and is_finite(low) and is_finite(high)):
@@ -561,10 +521,6 @@ def _discrete_cuts(_payload: object, operands: Sequence[Node]) -> Floats | None:
     before = np.nextafter(cuts, 0.0)
     cuts = np.where(np.floor(before * count) >= numbers, before, cuts)
     return np.asarray(np.where(np.floor(cuts * count) < numbers, np.nextafter(cuts, 1.0), cuts))
-
-
-def _select_bounds(_payload: object, index: Bounds, *options: Bounds | None) -> Bounds | None:
-    return hull_of_possible(options, _possible(index, len(options)))
 
 
 def _possible(index: Bounds, count: int) -> list[Mask]:
@@ -590,19 +546,15 @@ def _select_inverse(
     return bounds
 
 
-def _select_solver(terms: Terms, _payload: object, index: Any, *options: Any) -> Any:
-    return chain(terms, index, options)
-
-
 SELECT: Final = Operation(
     "select",
-    _select_kind,
+    lambda operands, payload: joined_kind(operands[1:], payload),
     _select,
     "The option that an index draws; only its faults and rejections count.",
-    python=_python_select,
-    bounds=_select_bounds,
+    python=lambda index, *options: options[index],
+    bounds=lambda _payload, index, *options: hull_of_possible(options, _possible(index, len(options))),
     inverse=_select_inverse,
-    solver=_select_solver,
+    solver=lambda terms, _payload, index, *options: chain(terms, index, options),
     strict=False,
     rewrite=_constants,
 )
@@ -616,7 +568,7 @@ OPERATIONS = (
         bounds=_range_bounds,
         inverse=_range_inverse,
         solver=_range_solver,
-        faults=_may_be_endless,
+        faults=lambda operands, _payload: not (is_finite(operands[1]) and is_finite(operands[2])),
         stacks=True,
     ),
     Operation(
@@ -634,7 +586,7 @@ OPERATIONS = (
         "A real number of the normal law (mean, standard deviation).",
         bounds=_normal_bounds,
         inverse=_normal_inverse,
-        solver=_normal_solver,
+        solver=lambda terms, _payload, _axis, _mean, _deviation: terms.fresh(Kind.SCALAR),
         stacks=True,
     ),
     Operation(
@@ -656,7 +608,10 @@ OPERATIONS = (
         bounds=_discrete_bounds,
         inverse=_discrete_inverse,
         solver=_discrete_solver,
-        faults=_may_be_large,
+        faults=lambda operands, _payload: any(
+            operand.kind is Kind.SCALAR and not _is_below(overall(operand), 2.0**61)
+            for operand in operands[1:]
+        ),
         rejects=_may_be_empty,
         missing="whole number in the range",
         stacks=True,
@@ -671,18 +626,18 @@ OPERATIONS = (
         inverse=_weighted_inverse,
         solver=_weighted_solver,
         stacks=True,
-        cuts=_weighted_cuts,
+        cuts=lambda payload, _operands: _between_options(payload[1]),
     ),
     Operation(
         "choice",
         always(Kind.INTEGER),
         _choice,
         "Which option is drawn; payload cumulative weights.",
-        bounds=_choice_bounds,
-        inverse=_choice_inverse,
+        bounds=lambda payload, axis: _position_bounds(axis, payload),
+        inverse=lambda payload, result, _axis: [_position_inverse(result, payload)],
         solver=_choice_solver,
         stacks=True,
-        cuts=_choice_cuts,
+        cuts=lambda payload, _operands: _between_options(payload),
     ),
     SELECT,
     LOOKUP,

@@ -38,14 +38,6 @@ def _hypot(_call: Call, *sides: Column) -> Column:
     return np.array([math.hypot(*values) for values in lanes], dtype=np.float64).reshape(columns[0].shape)
 
 
-def _normalize_angle(_call: Call, angle: Column) -> Column:
-    return normalize_angle(angle.astype(np.float64))
-
-
-def _python_normalize_angle(angle: Any) -> float:
-    return float(normalize_angle(np.array([float(angle)]))[0])
-
-
 def _wave_bounds(peak: float) -> Callable[[Any, Bounds], Bounds]:
     """Bounds of the periodic function that reaches 1 at ``peak`` (plus whole turns) and -1 half a turn later."""
 
@@ -86,27 +78,11 @@ def _wave_solver(terms: Terms, _payload: object, _angle: object) -> Any:
     return within(terms, -1.0, 1.0)
 
 
-def _tan_solver(terms: Terms, _payload: object, _angle: object) -> Any:
-    return terms.fresh(Kind.SCALAR)
-
-
-def _hypot_bounds(_payload: object, *parts: Bounds) -> Bounds:
-    return length_bounds(parts)
-
-
 def length_bounds(parts: Any) -> Bounds:
     """Bounds of the length of a vector from those of its components."""
     length = intervals.square_root(intervals.total([intervals.square(part) for part in parts]))
     length = intervals.relaxed(length, 1e-15)
     return Bounds(np.maximum(length.lower, 0.0), length.upper)
-
-
-def _hypot_inverse(_payload: object, result: Bounds, *parts: Bounds) -> list[Bounds]:
-    return sides(result, parts)
-
-
-def _hypot_solver(terms: Terms, _payload: object, *parts: Any) -> Any:
-    return root_of_squares(terms, [terms.number(part) for part in parts])
 
 
 def _normalize_bounds(_payload: object, angle: Bounds) -> Bounds:
@@ -197,7 +173,7 @@ OPERATIONS = (
         "Tangent of an angle in radians.",
         python=math.tan,
         bounds=_tan_bounds,
-        solver=_tan_solver,
+        solver=lambda terms, _payload, _angle: terms.fresh(Kind.SCALAR),
         faults=may_be_infinite,
         stacks=True,
         scalar=lambda _payload, angle: math.tan(angle),
@@ -208,17 +184,17 @@ OPERATIONS = (
         _hypot,
         "Length of a diagonal from its sides.",
         python=math.hypot,
-        bounds=_hypot_bounds,
-        inverse=_hypot_inverse,
-        solver=_hypot_solver,
+        bounds=lambda _payload, *parts: length_bounds(parts),
+        inverse=lambda _payload, result, *parts: sides(result, parts),
+        solver=lambda terms, _payload, *parts: root_of_squares(terms, [terms.number(part) for part in parts]),
         stacks=True,
     ),
     Operation(
         "normalize angle",
         always(Kind.SCALAR),
-        _normalize_angle,
+        lambda _call, angle: normalize_angle(angle.astype(np.float64)),
         "The angle moved by whole turns into [-pi, pi].",
-        python=_python_normalize_angle,
+        python=lambda angle: float(normalize_angle(np.array([float(angle)]))[0]),
         bounds=_normalize_bounds,
         inverse=_normalize_inverse,
         solver=_normalize_solver,

@@ -89,10 +89,6 @@ def _int_kind(operands: Sequence[Node], payload: object) -> Kind:
     return Kind.INTEGER if whole_limits(_int_bounds, operands, payload) is not None else Kind.OTHER
 
 
-def _int(_call: Call, number: Column) -> Column:
-    return _whole(np.trunc(number)) if number.dtype == np.float64 else as_integers(number)
-
-
 def _whole(values: Column) -> Column:
     """Floats to integers; lanes that failed before may hold anything, also what no integer holds."""
     return np.where(np.abs(values) < 2.0**62, values, 0.0).astype(np.int64)
@@ -265,7 +261,7 @@ OPERATIONS = (
     Operation(
         "int",
         _int_kind,
-        _int,
+        lambda _call, number: _whole(np.trunc(number)) if number.dtype == np.float64 else as_integers(number),
         "Python's `int` of a number: broken parts are cut off.",
         python=int,
         bounds=where_defined(_int_bounds),

@@ -25,14 +25,6 @@ def _any(*operands: bool) -> bool:
     return any(operands)
 
 
-def _and(call: Call, *columns: Column) -> Column:
-    return _decide(call, columns, decisive=False)
-
-
-def _or(call: Call, *columns: Column) -> Column:
-    return _decide(call, columns, decisive=True)
-
-
 def _decide(call: Call, columns: tuple[Column, ...], *, decisive: bool) -> Column:
     """The truth of operands read from the left until one is ``decisive``, or fails."""
     if all(status is None for status in call.operands):
@@ -50,14 +42,6 @@ def _decide(call: Call, columns: tuple[Column, ...], *, decisive: bool) -> Colum
     return ~open_lanes if decisive else open_lanes
 
 
-def _not(_call: Call, value: Column) -> Column:
-    return ~value
-
-
-def _if_kind(operands: Any, payload: object) -> Kind:
-    return joined_kind(operands[1:], payload)
-
-
 def _if(call: Call, test: Column, then: Column, otherwise: Column) -> Column:
     everywhere = np.ones(1, dtype=np.bool_)
     call.inherit(0, everywhere)
@@ -65,10 +49,6 @@ def _if(call: Call, test: Column, then: Column, otherwise: Column) -> Column:
     ready = everywhere if status is None else status == OK
     masks = [np.broadcast_to(mask, (call.lanes,)) for mask in (test & ready, ~test & ready)]
     return choose(call, masks, (then, otherwise), first=1)
-
-
-def _python_if(test: bool, then: object, otherwise: object) -> Any:
-    return then if test else otherwise
 
 
 def _and_bounds(_payload: object, *operands: Bounds) -> Bounds:
@@ -114,28 +94,6 @@ def _not_bounds(_payload: object, value: Bounds) -> Bounds:
     return Bounds(1 - value.upper, 1 - value.lower)
 
 
-def _not_inverse(_payload: object, result: Bounds, _value: Bounds) -> list[Bounds]:
-    return [_not_bounds(None, result)]
-
-
-def _and_solver(_terms: Terms, _payload: object, *operands: Any) -> Any:
-    return conjunction(operands)
-
-
-def _or_solver(_terms: Terms, _payload: object, *operands: Any) -> Any:
-    return disjunction(operands)
-
-
-def _not_solver(_terms: Terms, _payload: object, value: Any) -> Any:
-    return ~value
-
-
-def _if_bounds(
-    _payload: object, test: Bounds, then: Bounds | None, otherwise: Bounds | None
-) -> Bounds | None:
-    return hull_of_possible((then, otherwise), (test.upper > 0, test.lower < 1))
-
-
 def _if_inverse(
     _payload: object, result: Bounds, test: Bounds, then: Bounds | None, otherwise: Bounds | None
 ) -> list[Bounds | None]:
@@ -155,45 +113,47 @@ OPERATIONS = (
     Operation(
         "and",
         always(Kind.BOOLEAN),
-        _and,
+        lambda call, *columns: _decide(call, columns, decisive=False),
         "Whether all operands hold.",
         python=_all,
         bounds=_and_bounds,
         inverse=_and_inverse,
-        solver=_and_solver,
+        solver=lambda _terms, _payload, *operands: conjunction(operands),
         strict=False,
         stacks=True,
     ),
     Operation(
         "or",
         always(Kind.BOOLEAN),
-        _or,
+        lambda call, *columns: _decide(call, columns, decisive=True),
         "Whether any operand holds.",
         python=_any,
         bounds=_or_bounds,
         inverse=_or_inverse,
-        solver=_or_solver,
+        solver=lambda _terms, _payload, *operands: disjunction(operands),
         strict=False,
         stacks=True,
     ),
     Operation(
         "not",
         always(Kind.BOOLEAN),
-        _not,
+        lambda _call, value: ~value,
         "Whether the operand does not hold.",
         python=operator.not_,
         bounds=_not_bounds,
-        inverse=_not_inverse,
-        solver=_not_solver,
+        inverse=lambda _payload, result, _value: [_not_bounds(None, result)],
+        solver=lambda _terms, _payload, value: ~value,
         stacks=True,
     ),
     Operation(
         "if",
-        _if_kind,
+        lambda operands, payload: joined_kind(operands[1:], payload),
         _if,
         "The second operand where the first holds, else the third.",
-        python=_python_if,
-        bounds=_if_bounds,
+        python=lambda test, then, otherwise: then if test else otherwise,
+        bounds=lambda _payload, test, then, otherwise: hull_of_possible(
+            (then, otherwise), (test.upper > 0, test.lower < 1)
+        ),
         inverse=_if_inverse,
         solver=_if_solver,
         strict=False,

@@ -39,10 +39,6 @@ def _from_yaw_scalar(_payload: object, yaw: float) -> Any:
     return 0.0, 0.0, float(np.sin(half)), float(np.cos(half))
 
 
-def _from_yaw(_call: Call, yaw: Column) -> Column:
-    return quaternions.from_yaw(yaw)
-
-
 def _compose(_call: Call, outer: Column, inner: Column) -> Column:
     return quaternions.multiply(outer, inner)
 
@@ -134,14 +130,6 @@ def _conjugated(bounds: Bounds) -> Bounds:
     return intervals.stacked([*(intervals.negative(part) for part in (x, y, z)), w])
 
 
-def _inverse_bounds(_payload: object, orientation: Bounds) -> Bounds:
-    return _conjugated(orientation)
-
-
-def _inverse_inverse(_payload: object, result: Bounds, _orientation: Bounds) -> list[Bounds]:
-    return [_conjugated(result)]
-
-
 def matrix(orientation: Bounds) -> Bounds:
     """Bounds ``(m, 3, 3)`` of the rotation matrix."""
     x, y, z, w = intervals.components(orientation)
@@ -186,16 +174,6 @@ def turned_by(rotation: Bounds, vector: Bounds) -> Bounds:
     return Bounds(np.maximum(result.lower, -reach), np.minimum(result.upper, reach))
 
 
-def _rotate_bounds(_payload: object, orientation: Bounds, vector: Bounds) -> Bounds:
-    return turned(orientation, vector)
-
-
-def _rotate_inverse(
-    _payload: object, result: Bounds, orientation: Bounds, _vector: Bounds
-) -> list[Bounds | None]:
-    return [None, turned_by(matrix(_conjugated(orientation)), result)]
-
-
 def _rotate_solver(terms: Terms, _payload: object, orientation: Any, vector: Any) -> Any:
     if any(terms.constant(part) is None for part in orientation):
         return terms.fresh(Kind.VECTOR)
@@ -208,14 +186,6 @@ def _rotate_solver(terms: Terms, _payload: object, orientation: Any, vector: Any
 
 def _quaternion(call: Call, orientation: Column) -> Column:
     return np.ascontiguousarray(orientation[..., call.payload])
-
-
-def _quaternion_bounds(payload: int, orientation: Bounds) -> Bounds:
-    return intervals.component(orientation, payload)
-
-
-def _quaternion_solver(_terms: Terms, payload: int, orientation: Any) -> Any:
-    return orientation[payload]
 
 
 def _euler_bounds(payload: int, _orientation: Bounds) -> Bounds:
@@ -233,7 +203,7 @@ def _euler_solver(terms: Terms, payload: int, _orientation: object) -> Any:
 FROM_YAW: Final = Operation(
     "from yaw",
     always(Kind.ORIENTATION),
-    _from_yaw,
+    lambda _call, yaw: quaternions.from_yaw(yaw),
     "The orientation of a rotation about the vertical axis (radians).",
     bounds=_from_yaw_bounds,
     stacks=True,
@@ -322,8 +292,8 @@ OPERATIONS = (
         always(Kind.ORIENTATION),
         _inverse,
         "The opposite rotation.",
-        bounds=_inverse_bounds,
-        inverse=_inverse_inverse,
+        bounds=lambda _payload, orientation: _conjugated(orientation),
+        inverse=lambda _payload, result, _orientation: [_conjugated(result)],
         stacks=True,
         rewrite=_twice_inverse,
         scalar=lambda _payload, q: (-q[0], -q[1], -q[2], q[3]),
@@ -333,8 +303,11 @@ OPERATIONS = (
         always(Kind.VECTOR),
         _rotate,
         "A vector turned by an orientation.",
-        bounds=_rotate_bounds,
-        inverse=_rotate_inverse,
+        bounds=lambda _payload, orientation, vector: turned(orientation, vector),
+        inverse=lambda _payload, result, orientation, _vector: [
+            None,
+            turned_by(matrix(_conjugated(orientation)), result),
+        ],
         solver=_rotate_solver,
         stacks=True,
         rewrite=_not_turned,
@@ -356,8 +329,8 @@ OPERATIONS = (
         always(Kind.SCALAR),
         _quaternion,
         "One component of the unit quaternion of an orientation; payload 0 to 3 for x, y, z, w.",
-        bounds=_quaternion_bounds,
-        solver=_quaternion_solver,
+        bounds=lambda payload, orientation: intervals.component(orientation, payload),
+        solver=lambda _terms, payload, orientation: orientation[payload],
         stacks=True,
         scalar=lambda payload, orientation: orientation[payload],
     ),

@@ -28,10 +28,6 @@ def _stacked(x: Column, y: Column, z: Column) -> Column:
     return components_last(result)
 
 
-def _component(call: Call, vector: Column) -> Column:
-    return np.ascontiguousarray(vector[..., call.payload])
-
-
 def _parts(vector: Column) -> tuple[Column, Column, Column]:
     # Contiguous, so that functions give the same bits whatever the memory layout.
     x, y, z = (np.ascontiguousarray(vector[..., index]) for index in range(3))
@@ -107,21 +103,9 @@ def _norm_scalar(_payload: object, vector: _Triple) -> float:
     return float(_scaled_length(float(x), float(y), float(z)))
 
 
-def _dot_scalar(_payload: object, a: _Triple, b: _Triple) -> Any:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
 def _cross_scalar(_payload: object, a: _Triple, b: _Triple) -> Any:
     (ax, ay, az), (bx, by, bz) = a, b
     return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
-
-
-def _distance_scalar(_payload: object, a: _Triple, b: _Triple) -> float:
-    return _norm_scalar(None, (a[0] - b[0], a[1] - b[1], a[2] - b[2]))
-
-
-def _azimuth_scalar(_payload: object, vector: _Triple) -> float:
-    return normal_angle(float(np.arctan2(vector[1], vector[0])) - np.pi / 2)
 
 
 def _altitude_scalar(_payload: object, vector: _Triple) -> float:
@@ -133,29 +117,9 @@ def _normalized_scalar(_payload: object, vector: _Triple) -> Any:
     return vector[0] / length, vector[1] / length, vector[2] / length
 
 
-def _vector_bounds(_payload: object, *parts: Bounds) -> Bounds:
-    return intervals.stacked(parts)
-
-
-def _vector_inverse(_payload: object, result: Bounds, *_parts: Bounds) -> list[Bounds]:
-    return intervals.components(result)
-
-
-def _vector_solver(terms: Terms, _payload: object, *parts: Any) -> Any:
-    return tuple(terms.number(part) for part in parts)
-
-
-def _component_bounds(payload: int, vector: Bounds) -> Bounds:
-    return intervals.component(vector, payload)
-
-
 def _component_inverse(payload: int, result: Bounds, _vector: Bounds) -> list[Bounds]:
     rest = intervals.unbounded(result)
     return [intervals.stacked([result if index == payload else rest for index in range(3)])]
-
-
-def _component_solver(_terms: Terms, payload: int, vector: Any) -> Any:
-    return vector[payload]
 
 
 def _norm_bounds(_payload: object, vector: Bounds) -> Bounds:
@@ -164,10 +128,6 @@ def _norm_bounds(_payload: object, vector: Bounds) -> Bounds:
 
 def _norm_inverse(_payload: object, result: Bounds, vector: Bounds) -> list[Bounds]:
     return [intervals.stacked(sides(result, intervals.components(vector)))]
-
-
-def _norm_solver(terms: Terms, _payload: object, vector: Any) -> Any:
-    return root_of_squares(terms, vector)
 
 
 def _dot_bounds(_payload: object, a: Bounds, b: Bounds) -> Bounds:
@@ -192,10 +152,6 @@ def _dot_inverse(_payload: object, result: Bounds, a: Bounds, b: Bounds) -> list
     return [intervals.stacked(new_a), intervals.stacked(new_b)]
 
 
-def _dot_solver(_terms: Terms, _payload: object, a: Any, b: Any) -> Any:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
 _TURNS = ((1, 2), (2, 0), (0, 1))
 """Components that make each component of a vector product."""
 
@@ -208,14 +164,6 @@ def _cross_bounds(_payload: object, a: Bounds, b: Bounds) -> Bounds:
             for i, j in _TURNS
         ]
     )
-
-
-def _cross_solver(_terms: Terms, _payload: object, a: Any, b: Any) -> Any:
-    return tuple(a[i] * b[j] - a[j] * b[i] for i, j in _TURNS)
-
-
-def _distance_bounds(_payload: object, a: Bounds, b: Bounds) -> Bounds:
-    return length_bounds(intervals.components(intervals.subtract(a, b)))
 
 
 def _distance_inverse(_payload: object, result: Bounds, a: Bounds, b: Bounds) -> list[Bounds]:
@@ -265,14 +213,6 @@ def _altitude_bounds(_payload: object, vector: Bounds) -> Bounds:
     return intervals.doubtful(bounds, x, y, z)
 
 
-def _azimuth_solver(terms: Terms, _payload: object, _vector: object) -> Any:
-    return within(terms, -math.pi, math.pi)
-
-
-def _altitude_solver(terms: Terms, _payload: object, _vector: object) -> Any:
-    return within(terms, -math.pi / 2, math.pi / 2)
-
-
 def _normalized_bounds(_payload: object, vector: Bounds) -> Bounds:
     length = intervals.spread(_norm_bounds(None, vector), 2)
     quotient = intervals.divide(vector, length)
@@ -284,10 +224,6 @@ def _normalized_bounds(_payload: object, vector: Bounds) -> Bounds:
         np.where(vector.upper <= 0, np.minimum(bounds.upper, 0.0), bounds.upper),
     )
     return intervals.doubtful(sign, *(intervals.spread(part, 2) for part in intervals.components(vector)))
-
-
-def _normalized_solver(terms: Terms, _payload: object, _vector: object) -> Any:
-    return tuple(within(terms, -1.0, 1.0) for _ in range(3))
 
 
 def _part_of_vector(operands: Sequence[Node], payload: int) -> Node | None:
@@ -305,20 +241,20 @@ OPERATIONS = (
         always(Kind.VECTOR),
         _vector,
         "The vector of three numbers, in metres.",
-        bounds=_vector_bounds,
-        inverse=_vector_inverse,
-        solver=_vector_solver,
+        bounds=lambda _payload, *parts: intervals.stacked(parts),
+        inverse=lambda _payload, result, *_parts: intervals.components(result),
+        solver=lambda terms, _payload, *parts: tuple(terms.number(part) for part in parts),
         stacks=True,
         scalar=lambda _payload, x, y, z: (float(x), float(y), float(z)),
     ),
     Operation(
         "component",
         always(Kind.SCALAR),
-        _component,
+        lambda call, vector: np.ascontiguousarray(vector[..., call.payload]),
         "One component of a vector; payload 0, 1 or 2.",
-        bounds=_component_bounds,
+        bounds=lambda payload, vector: intervals.component(vector, payload),
         inverse=_component_inverse,
-        solver=_component_solver,
+        solver=lambda _terms, payload, vector: vector[payload],
         stacks=True,
         rewrite=_part_of_vector,
         scalar=lambda payload, vector: vector[payload],
@@ -330,7 +266,7 @@ OPERATIONS = (
         "Euclidean length of a vector.",
         bounds=_norm_bounds,
         inverse=_norm_inverse,
-        solver=_norm_solver,
+        solver=lambda terms, _payload, vector: root_of_squares(terms, vector),
         stacks=True,
         scalar=_norm_scalar,
     ),
@@ -341,9 +277,9 @@ OPERATIONS = (
         "Scalar product of two vectors.",
         bounds=_dot_bounds,
         inverse=_dot_inverse,
-        solver=_dot_solver,
+        solver=lambda _terms, _payload, a, b: a[0] * b[0] + a[1] * b[1] + a[2] * b[2],
         stacks=True,
-        scalar=_dot_scalar,
+        scalar=lambda _payload, a, b: a[0] * b[0] + a[1] * b[1] + a[2] * b[2],
     ),
     Operation(
         "cross",
@@ -351,7 +287,7 @@ OPERATIONS = (
         _cross,
         "Vector product of two vectors.",
         bounds=_cross_bounds,
-        solver=_cross_solver,
+        solver=lambda _terms, _payload, a, b: tuple(a[i] * b[j] - a[j] * b[i] for i, j in _TURNS),
         stacks=True,
         scalar=_cross_scalar,
     ),
@@ -360,11 +296,11 @@ OPERATIONS = (
         always(Kind.SCALAR),
         _distance,
         "Euclidean distance between two points.",
-        bounds=_distance_bounds,
+        bounds=lambda _payload, a, b: length_bounds(intervals.components(intervals.subtract(a, b))),
         inverse=_distance_inverse,
         solver=_distance_solver,
         stacks=True,
-        scalar=_distance_scalar,
+        scalar=lambda _payload, a, b: _norm_scalar(None, (a[0] - b[0], a[1] - b[1], a[2] - b[2])),
     ),
     Operation(
         "azimuth",
@@ -372,9 +308,9 @@ OPERATIONS = (
         _azimuth,
         "Direction of a vector in the horizontal plane: radians from North, anticlockwise, within [-pi, pi].",
         bounds=_azimuth_bounds,
-        solver=_azimuth_solver,
+        solver=lambda terms, _payload, _vector: within(terms, -math.pi, math.pi),
         stacks=True,
-        scalar=_azimuth_scalar,
+        scalar=lambda _payload, vector: normal_angle(float(np.arctan2(vector[1], vector[0])) - np.pi / 2),
     ),
     Operation(
         "altitude",
@@ -382,7 +318,7 @@ OPERATIONS = (
         _altitude,
         "Radians by which a vector rises above the horizon.",
         bounds=_altitude_bounds,
-        solver=_altitude_solver,
+        solver=lambda terms, _payload, _vector: within(terms, -math.pi / 2, math.pi / 2),
         stacks=True,
         scalar=_altitude_scalar,
     ),
@@ -392,7 +328,7 @@ OPERATIONS = (
         _normalized,
         "The unit vector of the same direction; zero stays.",
         bounds=_normalized_bounds,
-        solver=_normalized_solver,
+        solver=lambda terms, _payload, _vector: tuple(within(terms, -1.0, 1.0) for _ in range(3)),
         stacks=True,
         scalar=_normalized_scalar,
     ),

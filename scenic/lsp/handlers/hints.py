@@ -116,10 +116,6 @@ def _links(session: Session, params: types.DocumentLinkParams) -> list[types.Doc
     ]
 
 
-def _resolve_link(_session: Session, link: types.DocumentLink) -> types.DocumentLink:
-    return link
-
-
 def _colors(session: Session, params: types.DocumentColorParams) -> list[types.ColorInformation]:
     return [
         types.ColorInformation(
@@ -145,5 +141,5 @@ HANDLERS: Final = {
     types.TEXT_DOCUMENT_CODE_LENS: _lenses,
     types.CODE_LENS_RESOLVE: _resolve_lens,
     types.TEXT_DOCUMENT_DOCUMENT_LINK: _links,
-    types.DOCUMENT_LINK_RESOLVE: _resolve_link,
+    types.DOCUMENT_LINK_RESOLVE: lambda _session, link: link,
 }

@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 
 from scenic.graph.construction import make_node
-from scenic.graph.kinds import Column, Kind
+from scenic.graph.kinds import Kind
 from scenic.graph.node import Node
-from scenic.graph.operation import Call, Operation, always
+from scenic.graph.operation import Operation, always
 from scenic.graph.operations import TABLE
 from scenic.runtime.description.declarations import Tree
 from scenic.runtime.ground.context import current, here
@@ -199,14 +199,10 @@ def presence(symbolic: Callable[[], Any], now: Callable[[], Any]) -> Any:
     return now()
 
 
-def _truths(call: Call, *columns: Column) -> Column:
-    return np.array([bool(result) for result in evaluated(call, columns)], dtype=np.bool_)
-
-
 OPAQUE = Operation(
     "opaque condition",
     always(Kind.BOOLEAN),
-    _truths,
+    lambda call, *columns: np.array([bool(result) for result in evaluated(call, columns)], dtype=np.bool_),
     "A condition that is Python code, called with the sampled values of the names it reads.",
     pure=False,
     calls_code=True,

@@ -49,10 +49,6 @@ def _degrees(value: object) -> Any:
     return operate("multiply", value, 0.017453292519943295)
 
 
-def _field_at(field: Any, position: object) -> Any:
-    return field[position]
-
-
 def _follow(field: Any, start: object, distance: object) -> Any:
     end = field.followFrom(start, distance)
     return oriented_point(end, field[end])
@@ -60,10 +56,6 @@ def _follow(field: Any, start: object, distance: object) -> Any:
 
 def _offset_along(start: object, direction: object, offset: object) -> Any:
     return _add(start, _rotate(frame_at(direction, start, "`offset along`"), offset))
-
-
-def _relative_heading(heading: object, base: object) -> Any:
-    return _normal(_minus(heading, base))
 
 
 def _apparent_heading(target: Any, viewpoint: object) -> Any:
@@ -100,20 +92,12 @@ def _distance(start: object, end: object) -> Any:
     return _distance_between(start, end)
 
 
-def _distance_past(target: object, base: Any) -> Any:
-    return base.distancePast(target)
-
-
 def _angle(start: object, end: object) -> Any:
     return _azimuth(_minus(end, start))
 
 
 def _altitude(start: object, end: object) -> Any:
     return _slope(_minus(end, start))
-
-
-def _intersects(first: Any, second: object) -> Any:
-    return first.intersects(second)
 
 
 def _no_ego() -> NoReturn:
@@ -129,10 +113,6 @@ def _visible(region: Any, viewer: Any) -> Region:
     return part_of(region, viewer, seen=True)
 
 
-def _not_visible(region: Any, viewer: Any) -> Region:
-    return part_of(region, viewer, seen=False)
-
-
 def _attribute(side: str) -> str:
     """Return the attribute of objects for a side: ``frontLeft`` for ``front left``."""
     first, *others = side.split()
@@ -143,22 +123,22 @@ IMPLEMENTATIONS: Mapping[str, Callable[..., Any]] = MappingProxyType(
     {
         "deg": _degrees,
         "@": vector,
-        "at": _field_at,
+        "at": lambda field, position: field[position],
         "follow": _follow,
         "offset along": _offset_along,
         "relative position": _minus,
-        "relative heading": _relative_heading,
+        "relative heading": lambda heading, base: _normal(_minus(heading, base)),
         "apparent heading": _apparent_heading,
         "apparent heading to": _apparent_heading_to,
         **{f"is {words}": _lies(direction) for words, direction in DIRECTIONS.items()},
         "distance": _distance,
         "minimum distance": gap_between,
-        "distance past": _distance_past,
+        "distance past": lambda target, base: base.distancePast(target),
         "angle": _angle,
         "altitude": _altitude,
-        "intersects": _intersects,
+        "intersects": lambda first, second: first.intersects(second),
         "visible": _visible,
-        "not visible": _not_visible,
+        "not visible": lambda region, viewer: part_of(region, viewer, seen=False),
         **{f"{side} of": attrgetter(_attribute(side)) for side in SIDES},
     }
 )

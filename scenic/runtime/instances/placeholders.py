@@ -10,7 +10,7 @@ from typing import Any, Final
 
 from scenic.graph.construction import make_node
 from scenic.graph.kinds import Column, Kind, boxed
-from scenic.graph.node import Graph, Node
+from scenic.graph.node import Graph
 from scenic.graph.operation import Call, Operation, always
 from scenic.runtime.ground.context import Context, current, here
 from scenic.runtime.instances.mutators import KEPT, active, is_built_in
@@ -81,12 +81,8 @@ def complete(context: Context) -> None:
                 new = as_node(instance.__dict__[name])
                 if value.node.kind is Kind.OTHER and not new.kind.is_boxed:
                     new = make_node(_BOXED, [new], new.kind, here())
-                if new.kind is value.node.kind and not _depends(new, value.node):
+                if new.kind is value.node.kind and value.node not in Graph([new]).index:
                     value.node.complete((new,), value.node.payload)
-
-
-def _depends(node: Node, other: Node) -> bool:
-    return other in Graph([node]).index
 
 
 def _same(_call: Call, column: Column) -> Column:

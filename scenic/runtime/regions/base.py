@@ -492,14 +492,10 @@ class Region(metaclass=_RegionType):
         return f"{type(self).__name__}({', '.join(shown)})"
 
 
-def _contains_point(call: Call, points: Points, *columns: Column) -> Column:
-    return np.asarray(call.payload.contains_points(points, *columns), dtype=np.bool_)
-
-
 CONTAINS_POINT = Operation(
     "region contains point",
     always(Kind.BOOLEAN),
-    _contains_point,
+    lambda call, points, *columns: np.asarray(call.payload.contains_points(points, *columns), dtype=np.bool_),
     "Whether a region holds a point.",
     bounds=point_bounds,
     inverse=point_inverse,
@@ -585,10 +581,6 @@ def _point_extent(region: Region, *operands: Bounds | None) -> Bounds | None:
     return None if found is None else Bounds(found.lower - SLACK, found.upper + SLACK)
 
 
-def _may_find_none(_operands: Sequence[object], payload: Any) -> bool:
-    return bool(payload.may_find_none)
-
-
 _DRAW = Operation(
     "region point",
     always(Kind.VECTOR),
@@ -598,7 +590,7 @@ _DRAW = Operation(
     cuts=lambda region, operands: region.draw_cuts() if operands and operands[0].is_axis else None,
     stacks=True,
     partial=True,
-    rejects=_may_find_none,
+    rejects=lambda _operands, payload: bool(payload.may_find_none),
     missing="point of the region",
 )
 

@@ -178,14 +178,10 @@ _LANDING_OR_INSIDE = Operation(
 )
 
 
-def _corner_of_box(call: Call, *columns: Column) -> Column:
-    return body_points.bounds(body_of(*columns))[call.payload]
-
-
 _BOX_CORNER = Operation(
     "corner of a bounding box",
     always(Kind.VECTOR),
-    _corner_of_box,
+    lambda call, *columns: body_points.bounds(body_of(*columns))[call.payload],
     "The lower or upper corner of a body's box.",
 )
 _INRADIUS = Operation(

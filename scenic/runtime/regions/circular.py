@@ -8,7 +8,7 @@ import numpy as np
 from scenic.graph import intervals
 from scenic.graph.bounds import Bounds, outward
 from scenic.graph.kinds import Column, Kind
-from scenic.graph.operation import Call, Operation, always
+from scenic.graph.operation import Operation, always
 from scenic.graph.operations.functions import cos_bounds, sin_bounds
 from scenic.runtime.geometry.contact.collision import Body
 from scenic.runtime.geometry.containment import body_containment as containment
@@ -31,10 +31,6 @@ def disc_points(first: Column, second: Column) -> Points:
     # The radius of a uniform point of the unit disc is distributed as the square root of a uniform number.
     radius, angle = np.sqrt(first), 2 * math.pi * second
     return np.stack([radius * np.cos(angle), radius * np.sin(angle), np.zeros_like(radius)], axis=-1)
-
-
-def _disc_point(_call: Call, first: Column, second: Column) -> Column:
-    return disc_points(first, second)
 
 
 def disc_extent(center: Bounds | None, radius: Bounds | None) -> Bounds | None:
@@ -62,7 +58,7 @@ def _disc_inverse(_payload: object, result: Bounds, _first: Bounds, _second: Bou
 DISC_POINT = Operation(
     "disc point",
     always(Kind.VECTOR),
-    _disc_point,
+    lambda _call, first, second: disc_points(first, second),
     "A uniform point of the unit disc, from two axes.",
     bounds=_disc_bounds,
     inverse=_disc_inverse,

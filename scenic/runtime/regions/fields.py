@@ -596,16 +596,12 @@ def _headings(call: Call, points: Column) -> Column:
     return np.asarray(headings)
 
 
-def _heading_bounds(field: TabulatedField, points: Bounds) -> Bounds | None:
-    return field.heading_bounds(points)
-
-
 _HEADING = Operation(
     "field heading",
     always(Kind.SCALAR),
     _headings,
     "The heading of a field of polygons; the candidate is rejected where it has none.",
-    bounds=_heading_bounds,
+    bounds=lambda field, points: field.heading_bounds(points),
     rejects=True,
     missing="direction of the field",
 )
@@ -627,11 +623,6 @@ def _follow_table(call: Call, points: Column, distance: Column) -> Column:
         missing[moving] |= ~has_heading
     call.reject(missing)
     return place
-
-
-def _follow_bounds(_payload: object, points: Bounds | None, distance: Bounds | None) -> Bounds | None:
-    """Bound the end of a path along the field: no further from its start than its length, at the same height."""
-    return _around(points, distance)
 
 
 def _follow_inverse(
@@ -658,7 +649,7 @@ _FOLLOW_TABLE = Operation(
     always(Kind.VECTOR),
     _follow_table,
     "The end of a way along a field of polygons; the candidate is rejected where the way leaves them.",
-    bounds=_follow_bounds,
+    bounds=lambda _payload, points, distance: _around(points, distance),
     inverse=_follow_inverse,
     rejects=True,
     missing="direction of the field",

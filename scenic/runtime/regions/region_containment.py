@@ -63,11 +63,6 @@ def _column_holds_solid(column: Footprint, other: Region, tolerance: float) -> b
     return bool(column.polygons.buffer(tolerance + _SLACK).covers(shadow(solid)))
 
 
-def _thinner(one: Region, two: Region, _tolerance: float) -> bool | None:
-    """Nothing of a higher dimension lies in a region."""
-    return False if one.dimension < two.dimension else None
-
-
 def _solid_holds_line(one: Region, line: LineRegion, tolerance: float) -> bool | None:
     solid = meshed(one)
     if solid is None:
@@ -91,7 +86,7 @@ HOLDS: Final = PairTable(
         Cell(Region, Footprint, _region_holds_column),
         *(Cell(one, two, _solid_holds_solid) for one in _SOLIDS for two in _SOLIDS),
         *(Cell(Footprint, two, _column_holds_solid) for two in _SOLIDS),
-        Cell(Region, Region, _thinner),
+        Cell(Region, Region, lambda one, two, _tolerance: False if one.dimension < two.dimension else None),
         *(Cell(one, LineRegion, _solid_holds_line) for one in _SOLIDS),
         Cell(Region, Region, None),
     ),

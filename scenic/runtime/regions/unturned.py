@@ -59,7 +59,7 @@ def _seen_from(place: Node, centre: Node, turn: object) -> Any:
             is_there = True
         else:
             terms.append(term)
-    if not is_there and not _is_origin(centre):
+    if not is_there and not (centre.is_constant and not centre.payload.column.any()):
         terms.append(as_node(operate("negative", as_value(centre))))
     back, rotation = operate("inverse", turn), as_node(turn)
     result: Any = vector(0, 0, 0)
@@ -85,10 +85,6 @@ def _same(one: Node, other: Node) -> bool:
     if one.is_constant and other.is_constant:
         return one.kind is other.kind and bool(np.array_equal(one.payload.column, other.payload.column))
     return one is other
-
-
-def _is_origin(place: Node) -> bool:
-    return place.is_constant and not place.payload.column.any()
 
 
 __all__ = ["unturned"]

@@ -9,7 +9,7 @@ import numpy as np
 from scenic.graph import quaternions
 from scenic.graph.bounds import Bounds, outward
 from scenic.graph.kinds import Column, Kind
-from scenic.graph.operation import Call, Operation, always
+from scenic.graph.operation import Operation, always
 from scenic.language.errors import ScenicValueError
 from scenic.runtime.geometry.contact.collision import Body, collide
 from scenic.runtime.geometry.contact.scalar_bodies import Placed, placed
@@ -213,10 +213,6 @@ class BoxRegion(PlacedVolume):
         return containment.in_box(body, columns[0], columns[1], columns[2], lanes)
 
 
-def _ball_point(_call: Call, first: Column, second: Column, third: Column) -> Column:
-    return ball_points(first, second, third)
-
-
 def ball_points(first: Column, second: Column, third: Column) -> Points:
     """Uniform points ``(n, 3)`` of the unit ball from three uniform numbers ``(n,)``."""
     # Archimedes: height and azimuth of a uniform point of the sphere are uniform; the radius is a cube root.
@@ -234,7 +230,7 @@ def _ball_bounds(_payload: object, first: Bounds, *_others: Bounds) -> Bounds:
 BALL_POINT = Operation(
     "ball point",
     always(Kind.VECTOR),
-    _ball_point,
+    lambda _call, first, second, third: ball_points(first, second, third),
     "A uniform point of the unit ball, from three axes.",
     bounds=_ball_bounds,
 )

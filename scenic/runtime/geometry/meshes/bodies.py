@@ -10,10 +10,6 @@ from scenic.runtime.geometry.meshes.mesh import Mesh
 from scenic.runtime.geometry.poses import Booleans, Indices, Poses
 
 
-def _never() -> Booleans:
-    return np.zeros(1, dtype=np.bool_)
-
-
 @dataclass(frozen=True, eq=False)
 class Body:
     """One object over the lanes, as a column: a table of meshes, a mesh number for each lane, and poses.
@@ -33,7 +29,7 @@ class Body:
     meshes: tuple[Mesh, ...]
     choice: Indices | None
     poses: Poses
-    allow: Booleans = field(default_factory=_never)
+    allow: Booleans = field(default_factory=lambda: np.zeros(1, dtype=np.bool_))
     is_fixed: bool = False
 
     def __post_init__(self) -> None:
