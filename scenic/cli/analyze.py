@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from scenic.cli.options import program_argument, program_options
+from scenic.cli.options import COUNT, option, program_argument, program_options
 from scenic.cli.output import CLEAN, FINDINGS, has_colours
 
 if TYPE_CHECKING:
@@ -19,21 +19,17 @@ __all__ = ["analyze"]
 @click.command("analyze")
 @program_argument
 @program_options
-@click.option(
-    "-n",
-    "--candidates",
-    metavar="N",
-    type=click.IntRange(min=1),
+@option(
+    "-n --candidates N",
+    "Number of candidates of each component, at most, for estimating probabilities.",
+    COUNT,
     default=20_000,
-    show_default=True,
-    help="Number of candidates of each component, at most, for estimating probabilities.",
 )
-@click.option("--json", "as_json", is_flag=True, help="Write the findings as JSON.")
-@click.option(
-    "--png",
-    metavar="PATH",
-    type=click.Path(path_type=Path, dir_okay=False),
-    help="Draw the possible places of each object, from above and from the side.",
+@option("--json as_json", "Write the findings as JSON.")
+@option(
+    "--png PATH",
+    "Draw the possible places of each object, from above and from the side.",
+    click.Path(path_type=Path, dir_okay=False),
 )
 def analyze(
     file: str,

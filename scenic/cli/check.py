@@ -13,7 +13,7 @@ import click
 from scenic.cli.batch_parts import BatchPart, check_parts
 from scenic.cli.checking import Checker, CheckOutcome, CheckTask, Fixing, fault
 from scenic.cli.discovery import STANDARD_INPUT, discover
-from scenic.cli.options import OneOf
+from scenic.cli.options import COUNT, option
 from scenic.cli.output import FINDINGS, exit_code, has_colours, show_diagnostics, summary
 from scenic.cli.render import FORMATS, Report, Sources, render
 from scenic.cli.watching import watch
@@ -61,54 +61,28 @@ def _selectors(_context: click.Context, option: click.Parameter, given: tuple[st
 
 @click.command()
 @click.argument("paths", nargs=-1, metavar="[PATH]...", type=click.Path())
-@click.option(
-    "--format",
-    "output_format",
-    type=OneOf(list(FORMATS)),
-    default="text",
-    show_default=True,
-    help="Format of the output.",
-)
-@click.option(
-    "--select",
-    metavar="CODES",
+@option("--format output_format", "Format of the output.", list(FORMATS), default="text")
+@option(
+    "--select CODES",
+    "Show these codes only: SC304, SC3 for all codes that begin with it, or ALL; separated by commas, or "
+    "repeated.",
     multiple=True,
     callback=_selectors,
-    help="Show these codes only: SC304, SC3 for all codes that begin with it, or ALL; separated by commas, or "
-    "repeated.",
 )
-@click.option(
-    "--ignore", metavar="CODES", multiple=True, callback=_selectors, help="Do not show these codes."
-)
-@click.option("--fix", is_flag=True, help="Make the repairs that are certain, in the files.")
-@click.option("--diff", is_flag=True, help="Show these repairs as a patch instead, and change nothing.")
-@click.option("--deep", is_flag=True, help="Run the programs, and add what analysis proves about them.")
-@click.option(
-    "--strict", is_flag=True, help="Report problems of a part of a road map as errors, not warnings."
-)
-@click.option("--config", metavar="FILE", help="Read [tool.scenic] from this file, for all programs.")
-@click.option("--no-config", is_flag=True, help="Read no configuration.")
-@click.option(
-    "--stdin-filename", metavar="NAME", help="Name of standard input, which also selects the configuration."
-)
-@click.option(
-    "-j",
-    "--jobs",
-    metavar="N",
-    type=click.IntRange(min=1),
-    help="Use up to N processes.  [default: usable CPUs]",
-)
-@click.option("-v", "--verbose", is_flag=True, help="Report also imports whose names cannot be known.")
-@click.option("--exit-zero", is_flag=True, help="Exit with 0 even if there are findings.")
-@click.option("--statistics", is_flag=True, help="Show only the number of findings for each code.")
-@click.option(
-    "-o",
-    "--output-file",
-    metavar="FILE",
-    type=click.Path(path_type=Path, dir_okay=False),
-    help="Write the report to this file.",
-)
-@click.option("-w", "--watch", "watching", is_flag=True, help="Check again whenever a file changes.")
+@option("--ignore CODES", "Do not show these codes.", multiple=True, callback=_selectors)
+@option("--fix", "Make the repairs that are certain, in the files.")
+@option("--diff", "Show these repairs as a patch instead, and change nothing.")
+@option("--deep", "Run the programs, and add what analysis proves about them.")
+@option("--strict", "Report problems of a part of a road map as errors, not warnings.")
+@option("--config FILE", "Read [tool.scenic] from this file, for all programs.")
+@option("--no-config", "Read no configuration.")
+@option("--stdin-filename NAME", "Name of standard input, which also selects the configuration.")
+@option("-j --jobs N", "Use up to N processes.  [default: usable CPUs]", COUNT)
+@option("-v --verbose", "Report also imports whose names cannot be known.")
+@option("--exit-zero", "Exit with 0 even if there are findings.")
+@option("--statistics", "Show only the number of findings for each code.")
+@option("-o --output-file FILE", "Write the report to this file.", click.Path(path_type=Path, dir_okay=False))
+@option("-w --watch watching", "Check again whenever a file changes.")
 def check(paths: tuple[str, ...], **options: Any) -> int:
     """Report mistakes in programs and road maps (.xodr).
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from scenic.cli.options import PATH, option
 from scenic.cli.output import CLEAN, FINDINGS, has_colours
 
 if TYPE_CHECKING:
@@ -73,13 +74,11 @@ def _manifest_at(place: Path) -> "Manifest":
 
 @dataset.command()
 @click.argument("folder", metavar="FOLDER", type=click.Path(path_type=Path))
-@click.option("--program", metavar="FILE", help="The program.  [default: its place in the manifest]")
-@click.option(
-    "--share",
-    metavar="P%",
+@option("--program FILE", "The program.  [default: its place in the manifest]")
+@option(
+    "--share P%",
+    "Share of the scenes to make again and compare; 0 compares only the files with their digests.",
     default="1%",
-    show_default=True,
-    help="Share of the scenes to make again and compare; 0 compares only the files with their digests.",
 )
 def verify(folder: Path, program: str | None, share: str) -> int:
     """Check that a data set is undamaged, and that the program gives the same scenes.
@@ -152,14 +151,7 @@ def _share(text: str) -> float:
 
 @dataset.command()
 @click.argument("folders", metavar="FOLDER...", nargs=-1, required=True, type=click.Path(path_type=Path))
-@click.option(
-    "-o",
-    "--output",
-    metavar="FOLDER",
-    required=True,
-    type=click.Path(path_type=Path),
-    help="The joined data set.",
-)
+@option("-o --output FOLDER", "The joined data set.", PATH, required=True)
 def merge(folders: tuple[Path, ...], output: Path) -> int:
     """Join data sets of one program and seed, made with `--first` on several machines."""
     from scenic.batch.verifying import merge as joined

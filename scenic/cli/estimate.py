@@ -12,10 +12,13 @@ import click
 
 from scenic.cli.batch_parts import BatchPart, FileSink, SinkPart, check_parts, places_of, write_files
 from scenic.cli.options import (
+    COUNT,
+    PATH,
     BatchRequest,
     batch_options,
     course_options,
     first_option,
+    option,
     seconds,
     settings_of,
     swept_program_options,
@@ -168,97 +171,48 @@ _FILES: Final = (FileSink("report", _report, lambda page: check_page(page, "--re
 @click.command()
 @batch_options("runs", count=1000)
 @first_option("Number of the first run.")
-@click.option(
-    "-r",
-    "--requirement",
-    "requirements",
-    metavar="NAME",
-    multiple=True,
-    help="A requirement, by its label or as 'line 3': a run that violates one of those given is a counterexample. Repeatable."
+@option(
+    "-r --requirement requirements NAME",
+    "A requirement, by its label or as 'line 3': a run that violates one of those given is a counterexample. Repeatable."
     "  [default: all]",
+    multiple=True,
 )
-@click.option("--objective", metavar="NAME", help="Instead: a record or a parameter.")
-@click.option(
-    "--minimize",
-    "expression",
-    metavar="EXPR",
-    help="Instead: an expression over records, or over parameters.",
-)
-@click.option(
-    "--threshold",
-    metavar="X",
-    type=float,
+@option("--objective NAME", "Instead: a record or a parameter.")
+@option("--minimize expression EXPR", "Instead: an expression over records, or over parameters.")
+@option(
+    "--threshold X",
+    "Largest value of a counterexample, of --objective and --minimize.  [default: 0]",
+    float,
     default=0.0,
-    help="Largest value of a counterexample, of --objective and --minimize.  [default: 0]",
 )
-@click.option(
-    "--confidence",
-    metavar="C",
-    type=float,
-    default=0.95,
-    help="Chance of the interval to contain the probability.  [default: 0.95]",
+@option("--confidence C", "Chance of the interval to contain the probability.", float, default=0.95)
+@option("--precision H", "Make runs until the interval is plus or minus H.", float)
+@option("--at-most P", "Test whether the probability is at most P, with as few runs as possible.", float)
+@option(
+    "--good P",
+    "Of --at-most: a probability at which the answer is to be 'at most'.  [default: half of it]",
+    float,
 )
-@click.option("--precision", metavar="H", type=float, help="Make runs until the interval is plus or minus H.")
-@click.option(
-    "--at-most",
-    metavar="P",
-    type=float,
-    help="Test whether the probability is at most P, with as few runs as possible.",
+@option("--power W", "Of --at-most: the chance of that answer then.", float, default=0.9)
+@option("--budget N", "Runs at most, of --rare 10000 by default.  [default: no limit]", COUNT)
+@option("--time-limit T", "Seconds after which no new run begins.", float, callback=seconds)
+@option("--static", "Take scenes alone, without simulations.")
+@option("--rare", "Failures are rare: make runs that lead to them step by step (splitting).")
+@option(
+    "--follow DIR",
+    "Draw runs from where a search by --sampler ce or cma has found counterexamples (importance sampling).",
+    click.Path(path_type=Path, exists=True, file_okay=False),
 )
-@click.option(
-    "--good",
-    metavar="P",
-    type=float,
-    help="Of --at-most: a probability at which the answer is to be 'at most'.  [default: half of it]",
+@option(
+    "--hold SCENE",
+    "Let all runs have one scene: 'scene' (the first), 'scene:K', or the file of a saved scene.",
 )
-@click.option(
-    "--power",
-    metavar="W",
-    type=float,
-    default=0.9,
-    help="Of --at-most: the chance of that answer then.  [default: 0.9]",
-)
-@click.option(
-    "--budget",
-    metavar="N",
-    type=click.IntRange(min=1),
-    help="Runs at most, of --rare 10000 by default.  [default: no limit]",
-)
-@click.option(
-    "--time-limit", metavar="T", type=float, callback=seconds, help="Seconds after which no new run begins."
-)
-@click.option("--static", is_flag=True, help="Take scenes alone, without simulations.")
-@click.option(
-    "--rare", is_flag=True, help="Failures are rare: make runs that lead to them step by step (splitting)."
-)
-@click.option(
-    "--follow",
-    metavar="DIR",
-    type=click.Path(path_type=Path, exists=True, file_okay=False),
-    help="Draw runs from where a search by --sampler ce or cma has found counterexamples (importance sampling).",
-)
-@click.option(
-    "--hold",
-    metavar="SCENE",
-    help="Let all runs have one scene: 'scene' (the first), 'scene:K', or the file of a saved scene.",
-)
-@click.option(
-    "--against",
-    metavar="OTHER.scenic",
-    help="Compare with another program, by the same runs (McNemar's test).",
-)
+@option("--against OTHER.scenic", "Compare with another program, by the same runs (McNemar's test).")
 @course_options
 @swept_program_options
-@click.option(
-    "--join", "others", metavar="DIR", multiple=True, type=click.Path(path_type=Path, exists=True, file_okay=False),
-    help="If FILE is the folder of an estimate: another one, of other numbers of the same runs. Repeatable.",
-)  # fmt: skip
-@click.option(
-    "-o", "--output", metavar="DIR", type=click.Path(path_type=Path), help="Keep the runs in this folder."
-)
-@click.option(
-    "--report", metavar="PAGE.html", type=click.Path(path_type=Path), help="Make a page about the estimate."
-)
+@option("--join others DIR", "If FILE is the folder of an estimate: another one, of other numbers of the same runs. Repeatable.", click.Path(path_type=Path, exists=True, file_okay=False), multiple=True)  # fmt: skip
+@option("-o --output DIR", "Keep the runs in this folder.", PATH)
+@option("--report PAGE.html", "Make a page about the estimate.", PATH)
 def estimate(**options: Any) -> int:
     """Estimate how probable it is that a run violates a requirement.
 

@@ -12,11 +12,13 @@ import click
 
 from scenic.cli.batch_parts import FileSink, SinkPart, check_parts, places_of, write_files
 from scenic.cli.options import (
+    COUNT,
+    PATH,
     BatchRequest,
-    OneOf,
     batch_options,
     course_options,
     named_values,
+    option,
     seconds,
     settings_of,
     swept_program_options,
@@ -93,77 +95,38 @@ _FILES: Final = (FileSink("report", _report, lambda page: check_page(page, "--re
 
 @click.command()
 @batch_options("runs", count=1000)
-@click.option(
-    "--sampler",
-    metavar="NAME",
-    default="cma",
-    help="random, halton, sobol, grid, ce, mab, eg, sa, cma, tpe or bo.  [default: cma]",
-)
-@click.option(
-    "--sampler-option",
-    "sampler_options",
-    metavar="NAME=VALUE",
+@option("--sampler NAME", "random, halton, sobol, grid, ce, mab, eg, sa, cma, tpe or bo.", default="cma")
+@option(
+    "--sampler-option sampler_options NAME=VALUE",
+    "An option of the sampler. Repeatable.",
     multiple=True,
     callback=named_values,
-    help="An option of the sampler. Repeatable.",
 )
-@click.option(
-    "--objective",
-    "objectives",
-    metavar="NAME",
+@option(
+    "--objective objectives NAME",
+    "A requirement, a record or a parameter to minimise. Repeatable.  [default: the least robustness]",
     multiple=True,
-    help="A requirement, a record or a parameter to minimise. Repeatable.  [default: the least robustness]",
 )
-@click.option(
-    "--minimize",
-    "expressions",
-    metavar="EXPR",
+@option(
+    "--minimize expressions EXPR",
+    "An expression over records, or over parameters, to minimise. Repeatable.",
     multiple=True,
-    help="An expression over records, or over parameters, to minimise. Repeatable.",
 )
-@click.option(
-    "--threshold",
-    metavar="X",
-    type=float,
-    default=0.0,
-    help="Largest value of a counterexample.  [default: 0]",
-)
-@click.option(
-    "--stop-after", metavar="K", type=click.IntRange(min=1), help="End after this number of counterexamples."
-)
-@click.option(
-    "--time-limit",
-    metavar="T",
-    type=float,
-    callback=seconds,
-    help="Seconds after which no new generation of points begins.",
-)
-@click.option(
+@option("--threshold X", "Largest value of a counterexample.  [default: 0]", float, default=0.0)
+@option("--stop-after K", "End after this number of counterexamples.", COUNT)
+@option("--time-limit T", "Seconds after which no new generation of points begins.", float, callback=seconds)
+@option(
     "--space",
-    type=OneOf(["auto", "external", "scene"]),
+    "The space to search: external parameters, or all draws of the scene.",
+    ["auto", "external", "scene"],
     default="auto",
-    show_default=True,
-    help="The space to search: external parameters, or all draws of the scene.",
 )
-@click.option(
-    "--batch",
-    metavar="B",
-    type=click.IntRange(min=1),
-    help="Points that the sampler gives at a time.  [default: the sampler's]",
-)
-@click.option("--static", is_flag=True, help="Search scenes alone, without simulations.")
+@option("--batch B", "Points that the sampler gives at a time.  [default: the sampler's]", COUNT)
+@option("--static", "Search scenes alone, without simulations.")
 @course_options
 @swept_program_options
-@click.option(
-    "-o",
-    "--output",
-    metavar="DIR",
-    type=click.Path(path_type=Path),
-    help="Keep runs and counterexamples in this folder.",
-)
-@click.option(
-    "--report", metavar="PAGE.html", type=click.Path(path_type=Path), help="Make a page about the search."
-)
+@option("-o --output DIR", "Keep runs and counterexamples in this folder.", PATH)
+@option("--report PAGE.html", "Make a page about the search.", PATH)
 def falsify(**options: Any) -> int:
     """Search for scenes and simulations in which requirements fail.
 

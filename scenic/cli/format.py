@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from scenic.cli.discovery import STANDARD_INPUT, discover
+from scenic.cli.options import option
 from scenic.cli.output import FINDINGS, exit_code, show_diagnostics
 from scenic.configuration.project import Configurations
 from scenic.formats.files import write
@@ -21,11 +22,9 @@ __all__ = ["format_command"]
 
 @click.command("format")
 @click.argument("paths", nargs=-1, metavar="[PATH]...", type=click.Path())
-@click.option(
-    "--check", is_flag=True, help="Change nothing; exit with 1 if a file is not in the usual style."
-)
-@click.option("--diff", is_flag=True, help="Show the changes as a patch instead of making them.")
-@click.option("--stdin-filename", metavar="NAME", default="<stdin>", help="Name of standard input.")
+@option("--check", "Change nothing; exit with 1 if a file is not in the usual style.")
+@option("--diff", "Show the changes as a patch instead of making them.")
+@option("--stdin-filename NAME", "Name of standard input.", default="<stdin>")
 def format_command(paths: tuple[str, ...], check: bool, diff: bool, stdin_filename: str) -> int:
     """Format programs in the usual style, keeping comments and meaning.
 

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import click
 
+from scenic.cli.options import option
 from scenic.constrained import FORMATS, grammar_text, worlds
 from scenic.formats.files import write
 from scenic.language.spelling import nearest
@@ -13,25 +14,16 @@ __all__ = ["grammar"]
 
 
 @click.command()
-@click.option(
-    "--format",
-    "notation",
-    type=click.Choice(FORMATS),
+@option(
+    "--format notation",
+    "Notation: lark for llguidance, gbnf for llama.cpp, ebnf for xgrammar, json for the rules as data.",
+    click.Choice(FORMATS),
     default="lark",
-    show_default=True,
-    help="Notation: lark for llguidance, gbnf for llama.cpp, ebnf for xgrammar, json for the rules as data.",
 )
-@click.option(
-    "-o",
-    "--output",
-    metavar="OUT",
-    type=click.Path(path_type=Path, dir_okay=False),
-    help="Write the grammar to this file.",
-)
-@click.option(
-    "--world",
-    metavar="NAME",
-    help="Allow only the classes, behaviors and blueprints of this world model, such as driving or carla, and names that begin with `My`.",
+@option("-o --output OUT", "Write the grammar to this file.", click.Path(path_type=Path, dir_okay=False))
+@option(
+    "--world NAME",
+    "Allow only the classes, behaviors and blueprints of this world model, such as driving or carla, and names that begin with `My`.",
 )
 def grammar(notation: str, output: Path | None, world: str | None) -> None:
     """Show the grammar of the language, so that a language model can be kept to it while it writes.

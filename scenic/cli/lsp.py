@@ -2,21 +2,19 @@
 
 import click
 
+from scenic.cli.options import option
+
 __all__ = ["lsp"]
 
 
 @click.command()
-@click.option("--stdio", is_flag=True, help="Use standard input and output; this is the default.")
-@click.option("--tcp", "tcp", metavar="[HOST:]PORT", help="Wait for one client that connects to a port.")
-@click.option(
-    "--ws", "websocket", metavar="[HOST:]PORT", help="Wait for one client that connects by a web socket."
-)
-@click.option(
-    "--origin",
-    "origins",
+@option("--stdio", "Use standard input and output; this is the default.")
+@option("--tcp tcp [HOST:]PORT", "Wait for one client that connects to a port.")
+@option("--ws websocket [HOST:]PORT", "Wait for one client that connects by a web socket.")
+@option(
+    "--origin origins URL",
+    "With --ws: let pages of this origin connect, which browsers are otherwise refused.",
     multiple=True,
-    metavar="URL",
-    help="With --ws: let pages of this origin connect, which browsers are otherwise refused.",
 )
 def lsp(stdio: bool, tcp: str | None, websocket: str | None, origins: tuple[str, ...]) -> int:
     """Start the language server on standard input and output.

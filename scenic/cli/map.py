@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from scenic.cli.options import PATH, option
 from scenic.cli.output import CLEAN, has_colours
 from scenic.cli.sinks import OutputChoiceError
 
@@ -17,21 +18,8 @@ __all__ = ["map_command"]
 
 @click.command("map")
 @click.argument("file", metavar="FILE", type=click.Path(path_type=Path))
-@click.option(
-    "-o",
-    "--output",
-    metavar="OUT",
-    type=click.Path(path_type=Path),
-    help="Draw the map from above: OUT ends in .svg or .png.",
-)
-@click.option(
-    "--width",
-    metavar="PIXELS",
-    type=click.IntRange(min=50),
-    default=1600,
-    show_default=True,
-    help="Of the drawing.",
-)
+@option("-o --output OUT", "Draw the map from above: OUT ends in .svg or .png.", PATH)
+@option("--width PIXELS", "Of the drawing.", click.IntRange(min=50), default=1600)
 def map_command(file: Path, output: Path | None, width: int) -> int:
     """Show the contents of a road map, or draw it.
 

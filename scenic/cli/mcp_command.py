@@ -6,6 +6,7 @@ import sys
 
 import click
 
+from scenic.cli.options import option
 from scenic.language.errors import Located
 
 __all__ = ["mcp_command"]
@@ -18,19 +19,15 @@ class MissingExtraError(Located):
 
 
 @click.command("mcp")
-@click.option("--run", is_flag=True, help="Offer tools that run programs: try, sample, simulate, analyze.")
-@click.option(
-    "--http",
-    "port",
-    metavar="PORT",
-    type=click.IntRange(1, 65535),
-    help="Serve HTTP on this machine, not standard input and output.",
+@option("--run", "Offer tools that run programs: try, sample, simulate, analyze.")
+@option(
+    "--http port PORT", "Serve HTTP on this machine, not standard input and output.", click.IntRange(1, 65535)
 )
-@click.option(
+@option(
     "--folder",
-    type=click.Path(exists=True, file_okay=False),
+    "The folder of the programs, their modules and maps.  [default: the current folder]",
+    click.Path(exists=True, file_okay=False),
     default=os.curdir,
-    help="The folder of the programs, their modules and maps.  [default: the current folder]",
 )
 def mcp_command(run: bool, port: int | None, folder: str) -> int:
     """Serve tools for language models by the Model Context Protocol (MCP).

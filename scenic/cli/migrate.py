@@ -11,6 +11,7 @@ from typing import Any, Final
 import click
 
 from scenic.cli.discovery import STANDARD_INPUT, discover
+from scenic.cli.options import option
 from scenic.cli.output import FINDINGS, exit_code, show_diagnostics
 from scenic.configuration.project import Configurations
 from scenic.language.diagnostics import Diagnostic
@@ -26,14 +27,12 @@ _VERSION: Final = 1
 
 @click.command()
 @click.argument("paths", nargs=-1, metavar="[PATH]...", type=click.Path())
-@click.option("--write", "writing", is_flag=True, help="Write the converted programs into their files.")
-@click.option("--diff", is_flag=True, help="Show the changes as a patch.")
-@click.option("--check", is_flag=True, help="Change nothing; exit with 1 if a file would change.")
-@click.option(
-    "--strings", is_flag=True, help="Convert programs in strings of Python, JSON and Markdown, too."
-)
-@click.option("--2d", "flat", is_flag=True, help="Rely on the 2D mode: pin no meaning that it keeps.")
-@click.option("--json", "as_json", is_flag=True, help="Write the report as JSON.")
+@option("--write writing", "Write the converted programs into their files.")
+@option("--diff", "Show the changes as a patch.")
+@option("--check", "Change nothing; exit with 1 if a file would change.")
+@option("--strings", "Convert programs in strings of Python, JSON and Markdown, too.")
+@option("--2d flat", "Rely on the 2D mode: pin no meaning that it keeps.")
+@option("--json as_json", "Write the report as JSON.")
 def migrate(
     paths: tuple[str, ...],
     writing: bool,

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from scenic.cli.options import OneOf
+from scenic.cli.options import option
 from scenic.cli.output import CLEAN
 from scenic.templates import TEMPLATES, copy
 
@@ -13,14 +13,13 @@ __all__ = ["new"]
 
 @click.command()
 @click.argument("folder", metavar="FOLDER", type=click.Path(path_type=Path))
-@click.option(
+@option(
     "--template",
-    type=OneOf(sorted(TEMPLATES)),
-    default="tabletop",
-    show_default=True,
-    help="What the program is about: "
+    "What the program is about: "
     + "; ".join(f"{name}: {purpose}" for name, purpose in sorted(TEMPLATES.items()))
     + ".",
+    sorted(TEMPLATES),
+    default="tabletop",
 )
 def new(folder: Path, template: str) -> int:
     """Make a folder with a program to start from, and a README with the commands for it.

@@ -19,6 +19,10 @@ if TYPE_CHECKING:
     from scenic.runtime.scenes.scenario import Scenario
 
 __all__ = [
+    "COUNT",
+    "NATURAL",
+    "PATH",
+    "POSITIVE",
     "BatchRequest",
     "OneOf",
     "accept_changes_option",
@@ -32,6 +36,7 @@ __all__ = [
     "look_from_option",
     "named_values",
     "no_cache_option",
+    "option",
     "parameter_value",
     "program_argument",
     "program_options",
@@ -100,10 +105,40 @@ class OneOf(click.Choice[str]):
 
 _Command = TypeVar("_Command", bound=Callable[..., Any])
 
+COUNT: Final = click.IntRange(min=1)
+NATURAL: Final = click.IntRange(min=0)
+POSITIVE: Final = click.FloatRange(min=0, min_open=True)
+PATH: Final = click.Path(path_type=Path)
+
 _INTEGER: Final = re.compile(r"[+-]?\d+")
 _REAL: Final = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 _MOST_PIXELS: Final = 16384
 _WORDS: Final = MappingProxyType({"true": True, "True": True, "false": False, "False": False})
+
+
+def option(
+    form: str, help: str, kind: Any = None, *, default: Any = None, **settings: Any
+) -> Callable[[_Command], _Command]:
+    """Return a decorator that gives a command an option.
+
+    Args:
+        form: its names, a parameter's name in small letters if that is another one, and the metavariable of its value:
+            ``-n --count N``, ``--time-limit limit T``. Without a metavariable and a kind it is a flag.
+        help: its help, to which click adds the default unless it says one.
+        kind: the type of its value, or a list of the words that it may be.
+        default: its value where it is not given.
+        settings: other arguments of `click.option`.
+
+    """
+    words = form.split()
+    names = [word for word in words if word.startswith("-") or (word.isidentifier() and word.islower())]
+    metavar = next((word for word in words if word not in names), None)
+    if metavar is None and kind is None:
+        settings["is_flag"] = True
+    elif default is not None:
+        settings |= {"default": default, "show_default": "[default" not in help}
+    kind = OneOf(kind) if isinstance(kind, list) else kind
+    return click.option(*names, metavar=metavar, type=kind, help=help, **settings)
 
 
 def parameter_value(text: str) -> int | float | bool | str:
@@ -186,12 +221,10 @@ def image_size_option(
 
 def look_from_option(of: str = "images") -> Callable[[_Command], _Command]:
     """The option ``--look-from``, given to the command as ``outlook``; ``of`` is what it looks at, for the help."""
-    return click.option(
-        "--look-from",
-        "outlook",
-        metavar="AZ,EL",
+    return option(
+        "--look-from outlook AZ,EL",
+        f"Viewpoint of {of}: degrees east of south and above the horizon, or 'above'.  [default: -35,33]",
         callback=_outlook,
-        help=f"Viewpoint of {of}: degrees east of south and above the horizon, or 'above'.  [default: -35,33]",
     )
 
 
@@ -218,12 +251,11 @@ def _without_store(_context: click.Context, _parameter: click.Parameter, given: 
         os.environ["SCENIC_CACHE"] = "off"
 
 
-no_cache_option = click.option(
+no_cache_option = option(
     "--no-cache",
-    is_flag=True,
+    "Neither read nor store results about meshes on disk.",
     expose_value=False,
     callback=_without_store,
-    help="Neither read nor store results about meshes on disk.",
 )
 
 
@@ -232,87 +264,57 @@ program_argument = click.argument("file", metavar="FILE", type=click.Path())
 
 def first_option(help: str) -> Callable[[_Command], _Command]:
     """The option ``--first``: the number of the first result."""
-    return click.option(
-        "--first", metavar="K", type=click.IntRange(min=0), default=0, help=f"{help}  [default: 0]"
-    )
+    return option("--first K", help, NATURAL, default=0)
 
 
 def seed_option(things: str) -> Callable[[_Command], _Command]:
     """The option ``--seed``, from which all ``things`` follow."""
-    return click.option(
-        "--seed",
-        metavar="S",
-        type=int,
-        help=f"{things} of one seed are always the same. Without it, one is drawn and shown.",
+    return option(
+        "--seed S", f"{things} of one seed are always the same. Without it, one is drawn and shown.", int
     )
 
 
 def jobs_option(help: str) -> Callable[[_Command], _Command]:
     """The option ``-j``: the number of processes."""
-    return click.option(
-        "-j",
-        "--jobs",
-        "jobs",
-        metavar="J",
-        type=click.IntRange(min=1),
-        default=1,
-        help=f"{help}  [default: 1]",
-    )
+    return option("-j --jobs jobs J", help, COUNT, default=1)
 
 
 def dask_option(verb: str) -> Callable[[_Command], _Command]:
     """The option ``--dask``: a cluster to run on."""
-    return click.option(
-        "--dask", metavar="ADDRESS", help=f"{verb} on a Dask cluster: the address of its scheduler."
-    )
+    return option("--dask ADDRESS", f"{verb} on a Dask cluster: the address of its scheduler.")
 
 
-steps_option = click.option(
-    "--time",
-    "--steps",
-    "max_steps",
-    metavar="STEPS",
-    type=click.IntRange(min=0),
-    default=100,
-    help="Steps of a simulation at most.  [default: 100]",
+steps_option = option(
+    "--time --steps max_steps STEPS", "Steps of a simulation at most.", NATURAL, default=100
 )
 
-sobol_option = click.option(
+sobol_option = option(
     "--sobol",
-    is_flag=True,
-    help="Spread scenes, and the draws of simulations, evenly: rows of the Sobol sequence instead of random points.",
+    "Spread scenes, and the draws of simulations, evenly: rows of the Sobol sequence instead of random points.",
 )
 
 
-simulator_option = click.option(
-    "--simulator",
-    metavar="NAME",
-    help="kinematic, mujoco, newtonian, dummy, or MODULE:CLASS.  [default: the program's, else kinematic]",
+simulator_option = option(
+    "--simulator NAME",
+    "kinematic, mujoco, newtonian, dummy, or MODULE:CLASS.  [default: the program's, else kinematic]",
 )
-timestep_option = click.option(
-    "--timestep",
-    metavar="T",
-    type=float,
-    callback=seconds,
-    help="Seconds in a step.  [default: the simulator's]",
+timestep_option = option(
+    "--timestep T", "Seconds in a step.  [default: the simulator's]", float, callback=seconds
 )
 
 
-resume_option = click.option(
+resume_option = option(
     "--resume",
-    is_flag=True,
-    help="Go on with what an earlier run of the same command has left: a folder, or the lines of OUT or OUT.part.",
+    "Go on with what an earlier run of the same command has left: a folder, or the lines of OUT or OUT.part.",
 )
-accept_changes_option = click.option(
+accept_changes_option = option(
     "--accept-changes",
-    is_flag=True,
-    help="Go on although modules or files of the program have changed since; the manifest notes it.",
+    "Go on although modules or files of the program have changed since; the manifest notes it.",
 )
 
-extra_params_option = click.option(
+extra_params_option = option(
     "--extra-params",
-    is_flag=True,
-    help="Accept values for parameters that the program does not have, and add them to its scenes.",
+    "Accept values for parameters that the program does not have, and add them to its scenes.",
 )
 
 
@@ -320,8 +322,8 @@ def with_options(*options: Callable[[Any], Any]) -> Callable[[_Command], _Comman
     """A decorator that gives a command options, in the order of its help."""
 
     def add(command: _Command) -> _Command:
-        for option in reversed(options):
-            command = option(command)
+        for item in reversed(options):
+            command = item(command)
         return command
 
     return add
@@ -331,14 +333,7 @@ def batch_options(things: str, *, count: int = 1) -> Callable[[_Command], _Comma
     """The program, and options that all commands share which make many ``things`` of it; ``count`` is the default of ``-n``."""
     return with_options(
         program_argument,
-        click.option(
-            "-n",
-            "--count",
-            metavar="N",
-            type=click.IntRange(min=1),
-            default=count,
-            help=f"Number of {things}.  [default: {count}]",
-        ),
+        option("-n --count N", f"Number of {things}.", COUNT, default=count),
         seed_option(things.capitalize()),
         jobs_option("Number of processes. The results and their order are the same."),
         dask_option("Work"),
@@ -355,14 +350,11 @@ def program_options(command: _Command) -> _Command:
     """Options that all commands share which run a program."""
     return _program_options(
         command,
-        click.option(
-            "-p",
-            "--param",
-            "parameters",
-            metavar="NAME=VALUE",
+        option(
+            "-p --param parameters NAME=VALUE",
+            "A value for a global parameter: a number, true, false, or text. Repeatable.",
             multiple=True,
             callback=named_values,
-            help="A value for a global parameter: a number, true, false, or text. Repeatable.",
         ),
     )
 
@@ -371,26 +363,23 @@ def swept_program_options(command: _Command) -> _Command:
     """The same where parameters may have several values each: ``swept`` are the values by name."""
     return _program_options(
         command,
-        click.option(
-            "-p",
-            "--param",
-            "swept",
-            metavar="NAME=VALUE,...",
+        option(
+            "-p --param swept NAME=VALUE,...",
+            "A value for a global parameter: a number, true, false, or text; several values, separated by commas, for a"
+            ' sweep (text with a comma: in "quotation marks"). Repeatable: all combinations are made.',
             multiple=True,
             callback=_swept_values,
-            help="A value for a global parameter: a number, true, false, or text; several values, separated by commas, for a"
-            ' sweep (text with a comma: in "quotation marks"). Repeatable: all combinations are made.',
         ),
     )
 
 
 def _program_options(command: _Command, parameters: Callable[[_Command], _Command]) -> _Command:
-    for option in (
+    for item in (
         no_cache_option,
-        click.option("--2d", "mode_2d", is_flag=True, help="Use the 2D compatibility mode."),
-        click.option("--model", metavar="MODULE", help="A world model to use instead of the program's."),
-        click.option("--scenario", metavar="NAME", help="The scenario to use, if the file defines several."),
+        option("--2d mode_2d", "Use the 2D compatibility mode."),
+        option("--model MODULE", "A world model to use instead of the program's."),
+        option("--scenario NAME", "The scenario to use, if the file defines several."),
         parameters,
     ):
-        command = option(command)
+        command = item(command)
     return command

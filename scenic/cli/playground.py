@@ -8,6 +8,7 @@ from pathlib import Path
 
 import click
 
+from scenic.cli.options import option
 from scenic.cli.output import CLEAN
 from scenic.language.extras import installation
 
@@ -18,10 +19,8 @@ __all__ = ["playground"]
 @click.argument(
     "file", metavar="[FILE]", required=False, type=click.Path(exists=True, dir_okay=False, path_type=Path)
 )
-@click.option(
-    "--port", type=click.IntRange(0, 65535), default=0, help="The port to listen on.  [default: a free port]"
-)
-@click.option("--no-browser", is_flag=True, help="Only show the address, open no browser.")
+@option("--port", "The port to listen on.  [default: a free port]", click.IntRange(0, 65535), default=0)
+@option("--no-browser", "Only show the address, open no browser.")
 def playground(file: Path | None, port: int, no_browser: bool) -> int:
     """Write a program in the browser, with its mistakes marked, and view its scenes in 3D.
 

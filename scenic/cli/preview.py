@@ -7,6 +7,7 @@ from typing import Final
 
 import click
 
+from scenic.cli.options import POSITIVE, option
 from scenic.cli.output import exit_code, show_diagnostics
 from scenic.cli.render import Sources
 from scenic.language.errors import ParseCompileError
@@ -19,14 +20,12 @@ _MEMORY: Final = 8 << 30
 
 
 @click.command(hidden=True)
-@click.option("--filename", required=True, help="Name of the program; its modules are beside it.")
-@click.option("--scenario", help="The scenario of the program.")
-@click.option("--seed", type=int, default=0, help="The seed of the scenes.")
-@click.option("-n", "count", type=click.IntRange(1, 100), default=1, help="The number of scenes.")
-@click.option("--time-limit", type=click.FloatRange(min=0, min_open=True), default=20.0, help="In seconds.")
-@click.option(
-    "--remarks", "wants_remarks", is_flag=True, help="Write what analysis says of the lines, as JSON."
-)
+@option("--filename NAME", "Name of the program; its modules are beside it.", required=True)
+@option("--scenario NAME", "The scenario of the program.")
+@option("--seed", "The seed of the scenes.", int, default=0)
+@option("-n count", "The number of scenes.", click.IntRange(1, 100), default=1)
+@option("--time-limit", "In seconds.", POSITIVE, default=20.0)
+@option("--remarks wants_remarks", "Write what analysis says of the lines, as JSON.")
 def preview(
     filename: str, scenario: str | None, seed: int, count: int, time_limit: float, wants_remarks: bool
 ) -> int:

@@ -9,7 +9,16 @@ from urllib.parse import quote
 
 import click
 
-from scenic.cli.options import image_size_option, look_from_option, named_values, simulator_option
+from scenic.cli.options import (
+    COUNT,
+    PATH,
+    POSITIVE,
+    image_size_option,
+    look_from_option,
+    named_values,
+    option,
+    simulator_option,
+)
 from scenic.cli.output import CLEAN
 from scenic.cli.running import NOT_ALL
 from scenic.cli.sinks import OutputChoiceError, check_page
@@ -29,76 +38,60 @@ _FILMS: Final = (".gif", ".mp4", ".mov", ".mkv")
 @click.command()
 @click.argument("path", metavar="RUN", type=click.Path(path_type=Path))
 @click.argument("number", metavar="[NUMBER]", type=click.IntRange(min=0), required=False)
-@click.option(
-    "--worst",
-    metavar="K",
-    type=click.IntRange(min=1),
-    help="The run with the Kth least value of a search: --worst 1 is the worst run, the default.",
+@option(
+    "--worst K",
+    "The run with the Kth least value of a search: --worst 1 is the worst run, the default.",
+    COUNT,
 )
-@click.option(
-    "--program",
-    metavar="FILE",
-    type=click.Path(path_type=Path),
-    help="The program, where it is no longer in its place.  [default: the one that the run names]",
+@option(
+    "--program FILE",
+    "The program, where it is no longer in its place.  [default: the one that the run names]",
+    PATH,
 )
-@click.option(
-    "-p",
-    "--param",
-    "parameters",
-    metavar="NAME=VALUE",
+@option(
+    "-p --param parameters NAME=VALUE",
+    "Another value for a global parameter: the run as it would have been. Repeatable.",
     multiple=True,
     callback=named_values,
-    help="Another value for a global parameter: the run as it would have been. Repeatable.",
 )
 @simulator_option
-@click.option(
-    "--view", metavar="PAGE.html", type=click.Path(path_type=Path), help="Make a page that plays it."
+@option("--view PAGE.html", "Make a page that plays it.", PATH)
+@option("--open opened", "Open the page in the browser; without --view, a temporary one.")
+@option(
+    "--png PATH",
+    "Draw it: nine states in one image, at this name with .png, or an image for each state, in this folder.",
+    PATH,
 )
-@click.option(
-    "--open", "opened", is_flag=True, help="Open the page in the browser; without --view, a temporary one."
+@option(
+    "--film FILE",
+    "Make a film that plays as fast as the simulation: .gif, or .mp4, .mov or .mkv (extra `video`).",
+    PATH,
 )
-@click.option(
-    "--png",
-    metavar="PATH",
-    type=click.Path(path_type=Path),
-    help="Draw it: nine states in one image, at this name with .png, or an image for each state, in this folder.",
+@option(
+    "--every STEPS",
+    "Steps between images of a folder or a film.  [default: so many that there are 60 images at most]",
+    COUNT,
 )
-@click.option(
-    "--film",
-    metavar="FILE",
-    type=click.Path(path_type=Path),
-    help="Make a film that plays as fast as the simulation: .gif, or .mp4, .mov or .mkv (extra `video`).",
-)
-@click.option(
-    "--every",
-    metavar="STEPS",
-    type=click.IntRange(min=1),
-    help="Steps between images of a folder or a film.  [default: so many that there are 60 images at most]",
-)
-@click.option(
-    "--image-size",
-    metavar="WxH",
+@option(
+    "--image-size WxH",
+    "Columns and rows of the images, of a film, or of the whole image of several states.  [default: 960x720]",
     callback=image_size_option,
-    help="Columns and rows of the images, of a film, or of the whole image of several states.  [default: 960x720]",
 )
 @look_from_option()
-@click.option(
-    "--follow",
-    metavar="NAME",
-    help="Let the camera stay behind an object: the name of its variable, or its number. --look-from is then relative to it.  "
+@option(
+    "--follow NAME",
+    "Let the camera stay behind an object: the name of its variable, or its number. --look-from is then relative to it.  "
     "[default of --look-from: 0,22]",
 )
-@click.option(
-    "--around",
-    metavar="METRES",
-    type=click.FloatRange(min=0, min_open=True),
-    help="Metres around the object of --follow that images show.  [default: by its size]",
+@option(
+    "--around METRES",
+    "Metres around the object of --follow that images show.  [default: by its size]",
+    POSITIVE,
 )
-@click.option("--show-records", is_flag=True, help="Print what the simulation records.")
-@click.option(
+@option("--show-records", "Print what the simulation records.")
+@option(
     "--accept-changes",
-    is_flag=True,
-    help="Make the run although modules or files of the program have changed since; the changes are printed.",
+    "Make the run although modules or files of the program have changed since; the changes are printed.",
 )
 def replay(
     path: Path,

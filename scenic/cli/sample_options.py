@@ -8,13 +8,15 @@ import click
 
 from scenic.cli.batch_parts import forms_help, output_help
 from scenic.cli.options import (
+    COUNT,
+    POSITIVE,
     BatchRequest,
-    OneOf,
     batch_options,
     extra_params_option,
     first_option,
     image_size_option,
     look_from_option,
+    option,
     program_options,
     seconds,
     sobol_option,
@@ -53,132 +55,85 @@ _WAYS: Final = (("", ""), ("keep", ":"), ("reject", ":"))
 sample_options: Final = with_options(
     batch_options("scenes"),
     first_option("Number of the first scene; -n scenes from there on."),
-    click.option(
-        "--verify",
-        "verified",
-        is_flag=True,
-        help="With --resume: compare the content of a data set's parts with their digests, and make changed ones again.",
+    option(
+        "--verify verified",
+        "With --resume: compare the content of a data set's parts with their digests, and make changed ones again.",
     ),
-    click.option(
+    option(
         "--properties",
-        type=OneOf(["all", "changed"]),
+        "Properties of objects to write in JSON Lines: all, or only properties that the program gives.",
+        ["all", "changed"],
         default="all",
-        show_default=True,
-        help="Properties of objects to write in JSON Lines: all, or only properties that the program gives.",
     ),
     sobol_option,
-    click.option(
-        "--approximate",
-        metavar="N",
-        type=click.IntRange(min=2),
-        help="For requirements that are hardly ever met: make N scenes together. The larger N, the closer their "
+    option(
+        "--approximate N",
+        "For requirements that are hardly ever met: make N scenes together. The larger N, the closer their "
         "distribution is to the program's.",
+        click.IntRange(min=2),
     ),
     program_options,
     extra_params_option,
-    click.option(
-        "--settle",
-        metavar="T|keep:T",
-        callback=_settling,
-        help="Reject scenes in which an object moves within T seconds of physics (MuJoCo). With keep:T (keep: 3 seconds) scenes "
+    option(
+        "--settle T|keep:T",
+        "Reject scenes in which an object moves within T seconds of physics (MuJoCo). With keep:T (keep: 3 seconds) scenes "
         "have the poses after that time instead.",
+        callback=_settling,
     ),
-    click.option(
-        "--settle-tolerance",
-        metavar="M",
-        type=click.FloatRange(min=0, min_open=True),
+    option(
+        "--settle-tolerance M",
+        "With --settle: the distance in metres that is not yet moving; turning by 5 degrees is.",
+        POSITIVE,
         default=0.01,
-        show_default=True,
-        help="With --settle: the distance in metres that is not yet moving; turning by 5 degrees is.",
     ),
-    click.option(
-        "--no-prune",
-        is_flag=True,
-        help="Do not narrow the distributions first. The distribution of the scenes is the same.",
+    option(
+        "--no-prune", "Do not narrow the distributions first. The distribution of the scenes is the same."
     ),
-    click.option(
-        "--max-attempts",
-        metavar="M",
-        type=click.IntRange(min=1),
-        help="Give up a scene after this number of candidates.",
+    option("--max-attempts M", "Give up a scene after this number of candidates.", COUNT),
+    option("--time-limit T", "Stop after this number of seconds.", float, callback=seconds),
+    option("-o --output OUT", f"Where the scenes go, by the ending: {output_help(SINKS.values())}"),
+    option(
+        "--format form",
+        f"Format of the files of a folder: {forms_help(SINKS.values())}",
+        [form for sink in SINKS.values() for form in sink.forms],
     ),
-    click.option(
-        "--time-limit", metavar="T", type=float, callback=seconds, help="Stop after this number of seconds."
+    option("--part-size N", "Scenes in each part of a data set.  [default: 65536, with --camera 512]", COUNT),
+    option(
+        "--sampler NAME",
+        "Let a sampler of `scenic falsify` (halton, grid, cma, ...) choose the external parameters, else all draws.",
     ),
-    click.option(
-        "-o",
-        "--output",
-        metavar="OUT",
-        help=f"Where the scenes go, by the ending: {output_help(SINKS.values())}",
+    option(
+        "--minimize minimized EXPR",
+        "With --sampler: an expression over parameters, `ego` and `objects` that learning samplers minimise.",
     ),
-    click.option(
-        "--format",
-        "form",
-        type=OneOf([form for sink in SINKS.values() for form in sink.forms]),
-        help=f"Format of the files of a folder: {forms_help(SINKS.values())}",
-    ),
-    click.option(
-        "--part-size",
-        metavar="N",
-        type=click.IntRange(min=1),
-        help="Scenes in each part of a data set.  [default: 65536, with --camera 512]",
-    ),
-    click.option(
-        "--sampler",
-        metavar="NAME",
-        help="Let a sampler of `scenic falsify` (halton, grid, cma, ...) choose the external parameters, else all draws.",
-    ),
-    click.option(
-        "--minimize",
-        "minimized",
-        metavar="EXPR",
-        help="With --sampler: an expression over parameters, `ego` and `objects` that learning samplers minimise.",
-    ),
-    click.option(
-        "--view",
-        metavar="PAGE.html",
-        help="Make a page in which the scenes can be turned and stepped through.",
-    ),
-    click.option(
-        "--png",
-        metavar="PATH",
-        help="Make an image of each scene: in this folder, or at this name with .png.",
-    ),
-    click.option(
-        "--camera",
-        "cameras",
-        metavar="NAME",
-        multiple=True,
-        help="Make a data set of labelled images, as the sensor of this name sees them, or the object of a variable; "
+    option("--view PAGE.html", "Make a page in which the scenes can be turned and stepped through."),
+    option("--png PATH", "Make an image of each scene: in this folder, or at this name with .png."),
+    option(
+        "--camera cameras NAME",
+        "Make a data set of labelled images, as the sensor of this name sees them, or the object of a variable; "
         "several cameras share one data set.",
+        multiple=True,
     ),
-    click.option(
-        "--overlay", is_flag=True, help="With --camera: make images with the labels drawn into them, too."
-    ),
-    click.option(
-        "--image-size",
-        metavar="WxH",
+    option("--overlay", "With --camera: make images with the labels drawn into them, too."),
+    option(
+        "--image-size WxH",
+        "Columns and rows of the images.  [default: 960x720; a sensor's own]",
         callback=image_size_option,
-        help="Columns and rows of the images.  [default: 960x720; a sensor's own]",
     ),
     look_from_option("--png"),
-    click.option(
+    option(
         "--frame",
-        type=OneOf(["workspace", "objects"]),
-        default="workspace",
-        help="The contents that --png fits into the image: the workspace, so that all scenes are seen alike, or the "
+        "The contents that --png fits into the image: the workspace, so that all scenes are seen alike, or the "
         "objects.",
-        show_default=True,
+        ["workspace", "objects"],
+        default="workspace",
     ),
-    click.option(
+    option(
         "--show-params",
-        is_flag=True,
-        help="Print the parameters of each scene, on the error stream if the scenes go to standard output.",
+        "Print the parameters of each scene, on the error stream if the scenes go to standard output.",
     ),
-    click.option(
-        "--profile",
-        is_flag=True,
-        help="Show the time of sampling by operation, line and requirement, instead of the scenes.",
+    option(
+        "--profile", "Show the time of sampling by operation, line and requirement, instead of the scenes."
     ),
 )
 

@@ -5,16 +5,16 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
-import click
-
 from scenic.cli.batch_parts import SinkPart
 from scenic.cli.options import (
+    COUNT,
+    PATH,
     BatchRequest,
-    OneOf,
     batch_options,
     course_options,
     extra_params_option,
     first_option,
+    option,
     seconds,
     sobol_option,
     swept_program_options,
@@ -66,67 +66,45 @@ simulate_options: Final = with_options(
     batch_options("simulations"),
     first_option("Number of the first one."),
     course_options,
-    click.option(
-        "--tries",
-        metavar="M",
-        type=click.IntRange(min=1),
-        default=20,
-        help="Number of tries before a scene is given up as rejected.  [default: 20]",
-    ),
-    click.option(
+    option("--tries M", "Number of tries before a scene is given up as rejected.", COUNT, default=20),
+    option(
         "--keep",
-        type=OneOf(["all", "violations", "none"]),
-        default="none",
-        show_default=True,
-        help="Simulations to keep although they violate a requirement: none (they are rejected and tried again), all, or "
+        "Simulations to keep although they violate a requirement: none (they are rejected and tried again), all, or "
         "violations (then the folder and the page contain only simulations with a violation).",
+        ["all", "violations", "none"],
+        default="none",
     ),
-    click.option(
-        "--table",
-        metavar="FILE.csv",
-        type=click.Path(path_type=Path),
-        help="Write a row for each simulation: verdict, robustness, reason of its end.",
+    option(
+        "--table FILE.csv", "Write a row for each simulation: verdict, robustness, reason of its end.", PATH
     ),
-    click.option(
-        "--plot",
-        "picture",
-        metavar="FILE.svg",
-        type=click.Path(path_type=Path),
-        help="Draw the robustness of all simulations, for each setting of the parameters, and its mean.",
+    option(
+        "--plot picture FILE.svg",
+        "Draw the robustness of all simulations, for each setting of the parameters, and its mean.",
+        PATH,
     ),
     sobol_option,
-    click.option(
-        "--step-limit",
-        metavar="T",
-        type=float,
+    option(
+        "--step-limit T",
+        "Seconds that the program may run within one step.  [default: 10]",
+        float,
         callback=seconds,
         default=10.0,
-        help="Seconds that the program may run within one step.  [default: 10]",
     ),
     swept_program_options,
     extra_params_option,
-    click.option("--show-params", is_flag=True, help="Print the parameters of each simulation's scene."),
-    click.option("--show-records", is_flag=True, help="Print the records of each simulation."),
-    click.option(
-        "-o",
-        "--output",
-        metavar="DIR",
-        type=click.Path(path_type=Path),
-        help="Keep the trajectories in this folder, which must be new or without simulations.",
+    option("--show-params", "Print the parameters of each simulation's scene."),
+    option("--show-records", "Print the records of each simulation."),
+    option(
+        "-o --output DIR",
+        "Keep the trajectories in this folder, which must be new or without simulations.",
+        PATH,
     ),
-    click.option(
-        "--format",
-        "form",
-        type=OneOf(list(FOLDER.forms)),
-        default="jsonl",
-        show_default=True,
-        help="Format of the trajectories: JSON Lines, columns (extra `parquet`), OpenSCENARIO XML (extra "
+    option(
+        "--format form",
+        "Format of the trajectories: JSON Lines, columns (extra `parquet`), OpenSCENARIO XML (extra "
         "`openscenario`), or CommonRoad XML.",
+        list(FOLDER.forms),
+        default="jsonl",
     ),
-    click.option(
-        "--view",
-        metavar="PAGE.html",
-        type=click.Path(path_type=Path),
-        help="Make a page that plays the simulations.",
-    ),
+    option("--view PAGE.html", "Make a page that plays the simulations.", PATH),
 )

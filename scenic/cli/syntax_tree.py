@@ -7,7 +7,7 @@ from typing import Any, Final
 import click
 
 from scenic.cli.deep import call_deep
-from scenic.cli.options import program_argument
+from scenic.cli.options import option, program_argument
 from scenic.cli.output import exit_code, show_diagnostics
 from scenic.cli.render import Sources
 from scenic.compiler.check import in_order
@@ -22,9 +22,7 @@ _ALL_FIELDS: Final[dict[str, Any]] = {"show_empty": True} if sys.version_info >=
 
 @click.command()
 @program_argument
-@click.option(
-    "--positions", is_flag=True, help="Show the place of each node: lines from 1, columns in UTF-8 bytes."
-)
+@option("--positions", "Show the place of each node: lines from 1, columns in UTF-8 bytes.")
 def syntax_tree(file: str, positions: bool) -> int:
     """Show the syntax tree of a program.
 

@@ -11,7 +11,7 @@ from typing import Final
 import click
 
 from scenic.cli.discovery import STANDARD_INPUT, discover
-from scenic.cli.options import OneOf, program_options, seed_option
+from scenic.cli.options import COUNT, NATURAL, POSITIVE, OneOf, option, program_options, seed_option
 from scenic.cli.output import has_colours
 from scenic.configuration.project import PLAIN, Configurations
 from scenic.language.errors import ScenicError
@@ -35,69 +35,24 @@ EXIT_CODES: Final[Mapping[str, int]] = MappingProxyType(
     flag_value="object",
     help="Print one JSON object, or with `--json lines` one object a line for each program.",
 )
-@click.option(
+@option(
     "--schema",
-    is_flag=True,
-    help="Print the JSON schema of an answer, and end.",
+    "Print the JSON schema of an answer, and end.",
     is_eager=True,
     expose_value=False,
     callback=lambda context, _option, wanted: _show_schema(context, wanted),
 )
 @seed_option("The scene and the simulation")
 @program_options
-@click.option(
-    "--simulate",
-    "steps",
-    metavar="N",
-    type=click.IntRange(min=0),
-    default=0,
-    help="Simulate N steps of the scene.",
-)
-@click.option("--png", metavar="FILE.png", help="Draw the scene; of several, into this folder.")
-@click.option(
-    "-n",
-    "scenes",
-    metavar="N",
-    type=click.IntRange(min=1),
-    default=1,
-    help="Sample N scenes of each program.",
-)
-@click.option(
-    "--moments", metavar="FILE.png", help="With --simulate and one program: draw moments of the simulation."
-)
-@click.option(
-    "--candidates",
-    metavar="M",
-    type=click.IntRange(min=1),
-    default=2000,
-    show_default=True,
-    help="Candidates for the scene.",
-)
-@click.option(
-    "--seconds",
-    metavar="T",
-    type=click.FloatRange(min=0, min_open=True),
-    default=20.0,
-    show_default=True,
-    help="Seconds for each program.",
-)
-@click.option(
-    "--memory",
-    metavar="MB",
-    type=click.IntRange(min=256),
-    default=4096,
-    show_default=True,
-    help="Megabytes of address space for each program.",
-)
-@click.option(
-    "--stdin-filename",
-    metavar="NAME",
-    default="program.scenic",
-    help="Name of the program of standard input.",
-)
-@click.option(
-    "-j", "--jobs", metavar="N", type=click.IntRange(min=1), default=1, help="Try programs in N processes."
-)
+@option("--simulate steps N", "Simulate N steps of the scene.", NATURAL, default=0)
+@option("--png FILE.png", "Draw the scene; of several, into this folder.")
+@option("-n scenes N", "Sample N scenes of each program.", COUNT, default=1)
+@option("--moments FILE.png", "With --simulate and one program: draw moments of the simulation.")
+@option("--candidates M", "Candidates for the scene.", COUNT, default=2000)
+@option("--seconds T", "Seconds for each program.", POSITIVE, default=20.0)
+@option("--memory MB", "Megabytes of address space for each program.", click.IntRange(min=256), default=4096)
+@option("--stdin-filename NAME", "Name of the program of standard input.", default="program.scenic")
+@option("-j --jobs N", "Try programs in N processes.", COUNT, default=1)
 def try_command(
     paths: tuple[str, ...],
     form: str | None,

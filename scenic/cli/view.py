@@ -12,7 +12,7 @@ from typing import Final
 import click
 
 from scenic.cli import sinks
-from scenic.cli.options import image_size_option, look_from_option, program_argument
+from scenic.cli.options import COUNT, NATURAL, image_size_option, look_from_option, option, program_argument
 from scenic.cli.output import CLEAN
 from scenic.formats.reading import ReadScene, SceneFileError, read_scenes, scenes_of
 
@@ -26,43 +26,22 @@ _PAGES: Final = frozenset({".html", ".htm"})
 
 @click.command()
 @program_argument
-@click.option(
-    "-o",
-    "--output",
-    "outputs",
-    metavar="OUT",
-    multiple=True,
-    help="The output, by its ending: one page of all scenes (.html), or a file for each scene: .glb, .obj or "
+@option(
+    "-o --output outputs OUT",
+    "The output, by its ending: one page of all scenes (.html), or a file for each scene: .glb, .obj or "
     ".png; any other name is a folder for images. Repeatable.  [default: a page beside SCENES.jsonl]",
+    multiple=True,
 )
-@click.option(
-    "--first",
-    metavar="K",
-    type=click.IntRange(min=0),
-    default=0,
-    help="Omit scenes with k less than this.",
-)
-@click.option(
-    "-n",
-    "count",
-    metavar="N",
-    type=click.IntRange(min=1),
-    help="The largest number of scenes.  [default: all]",
-)
-@click.option(
-    "--image-size",
-    metavar="WxH",
-    callback=image_size_option,
-    help="Columns and rows of the images.  [default: 960x720]",
-)
+@option("--first K", "Omit scenes with k less than this.", NATURAL, default=0)
+@option("-n count N", "The largest number of scenes.  [default: all]", COUNT)
+@option("--image-size WxH", "Columns and rows of the images.  [default: 960x720]", callback=image_size_option)
 @look_from_option()
-@click.option(
+@option(
     "--watch",
-    is_flag=True,
-    help="FILE is a program: show new scenes in the browser whenever it is saved. Runs the program each time.",
+    "FILE is a program: show new scenes in the browser whenever it is saved. Runs the program each time.",
 )
-@click.option("--seed", metavar="S", type=int, default=0, help="Seed of the scenes of --watch.  [default: 0]")
-@click.option("--no-browser", is_flag=True, help="With --watch: only show the address, open no browser.")
+@option("--seed S", "Seed of the scenes of --watch.", int, default=0)
+@option("--no-browser", "With --watch: only show the address, open no browser.")
 def view(
     file: str,
     outputs: tuple[str, ...],
