@@ -104,7 +104,7 @@ def parameters(program: str, meshes: str) -> dict[str, object]:
 def child(program: str, seed: int, scenes: int, prune: bool, meshes: str) -> None:
     """Run one case in a fresh process, and print a `Run` as JSON."""
     from scenic.pipeline import load
-    from scenic.runtime.sampling.report import Exhausted
+    from scenic.runtime.sampling.rejection_report import Exhausted
 
     file = HERE / f"{CASES[program].file}.scenic"
     scenario = load(file, params=parameters(program, meshes), prune=prune)

@@ -32,8 +32,8 @@ from typing import Any, Final
 
 import scenic
 from scenic.domains.driving import measures
-from scenic.formats.commonroad.files import commonroad_document, document_text
 from scenic.formats.commonroad.obstacles import ObstacleCourse, State, state_of
+from scenic.formats.commonroad.scenario_files import commonroad_document, document_text
 from scenic.simulators.newtonian import NewtonianSimulator
 from tests.maps import RoadText, line, map_text, two_way
 

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import scenic
-from scenic.runtime.sampling.report import Exhausted
+from scenic.runtime.sampling.rejection_report import Exhausted
 
 APPROXIMATE = ("300 cars", "1000 cars")
 """Programs of which approximate scenes are made."""

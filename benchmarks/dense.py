@@ -9,7 +9,7 @@ import math
 import time
 
 import scenic
-from scenic.runtime.sampling.report import Exhausted
+from scenic.runtime.sampling.rejection_report import Exhausted
 
 PROGRAMS = {
     "30 mugs": """

@@ -6,7 +6,7 @@ Run as ``python -m benchmarks.discrete``.
 import time
 
 import scenic
-from scenic.runtime.sampling.report import Exhausted
+from scenic.runtime.sampling.rejection_report import Exhausted
 
 PROGRAMS: dict[str, str] = {
     "slots (16)": """

@@ -10,7 +10,7 @@ from importlib import import_module
 from typing import Any, Final
 
 import scenic
-from scenic.runtime.sampling.report import Exhausted
+from scenic.runtime.sampling.rejection_report import Exhausted
 
 PROGRAMS: Final[dict[str, str]] = {
     "intersection, conflicting maneuvers": """

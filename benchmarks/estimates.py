@@ -24,8 +24,8 @@ import scenic
 from scenic.estimation.estimating import Runs
 from scenic.estimation.requirements import goals_of
 from scenic.runtime.temporal.robustness import joint_margin
-from scenic.statistics.intervals import exact_interval
-from scenic.statistics.sequences import is_checked, log_wealth, sequence_interval
+from scenic.statistics.confidence_intervals import exact_interval
+from scenic.statistics.confidence_sequences import is_checked, log_wealth, sequence_interval
 from scenic.statistics.sequential_test import BoundTest
 from scenic.statistics.splitting import Move, Splitting, SplittingRun, repeated_interval, repeated_probability
 

@@ -23,7 +23,7 @@ from benchmarks.law_programs import Program, programs
 from scenic.graph.domain import Domain
 from scenic.graph.draws import Counter, attempt_keys, scene_keys, seed_word
 from scenic.runtime.sampling.engine import Engine
-from scenic.runtime.sampling.report import Exhausted
+from scenic.runtime.sampling.rejection_report import Exhausted
 from scenic.runtime.scenes.scenario import Scenario
 from scenic.runtime.scenes.scene import Scene
 

@@ -5,7 +5,7 @@ import time
 from pathlib import Path
 
 from scenic.formats.camera import STANDARD, framed, framing
-from scenic.formats.instances import picture
+from scenic.formats.mesh_instances import picture
 from scenic.formats.png import encoded
 from scenic.formats.render import SIZE, render
 from scenic.pipeline import load

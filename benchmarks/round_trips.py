@@ -25,7 +25,7 @@ from scenic.formats.poses import rotation_matrix
 from scenic.formats.robotics.scene_files import scene_files
 from scenic.formats.robotics.solids import Solid, solids_of
 from scenic.language.errors import Located, ScenicError
-from scenic.runtime.sampling.report import Exhausted
+from scenic.runtime.sampling.rejection_report import Exhausted
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 FIVE = (

@@ -12,7 +12,7 @@ from scenic.formats.html import page
 from scenic.formats.json_lines import scene_line
 from scenic.formats.png import png
 from scenic.pipeline import load
-from scenic.runtime.sampling.report import Exhausted
+from scenic.runtime.sampling.rejection_report import Exhausted
 from scenic.runtime.scenes.scene import Scene
 
 HERE = Path(__file__).parent

@@ -15,11 +15,11 @@ from typing import Any, Final
 from examples import program
 from scenic.formats.camera import Outlook, corners, framing
 from scenic.formats.files import make_folder, write
-from scenic.formats.instances import Instance, Picture, picture
+from scenic.formats.mesh_instances import Instance, Picture, picture
 from scenic.formats.png import encoded
 from scenic.formats.render import render
 from scenic.pipeline import load
-from scenic.simulators.batch import choose_simulator, simulate_number
+from scenic.simulators.numbered_simulations import choose_simulator, simulate_number
 
 SIZE: Final = (720, 450)
 

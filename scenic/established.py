@@ -81,7 +81,7 @@ MODULES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
                     " StuckBehaviorWarning"
                 ),
             ),
-            ("scenic.simulators.watching", "stuckBehaviorWarningTimeout=STUCK_AFTER"),
+            ("scenic.simulators.step_watchdog", "stuckBehaviorWarningTimeout=STUCK_AFTER"),
         ),
         "scenic.core.dynamics.actions": _homes(("scenic.simulators.actions", "Action")),
         "scenic.core.dynamics.behaviors": _homes((_DEFINITIONS, "Behavior Monitor")),

@@ -22,7 +22,7 @@ from typing import Any, Final, SupportsFloat, TypeAlias
 import numpy as np
 
 from scenic.dataclass import dataclass
-from scenic.formats.instances import picture
+from scenic.formats.mesh_instances import picture
 from scenic.formats.render import render
 from scenic.language.errors import (
     GuardViolation,
@@ -35,11 +35,11 @@ from scenic.language.extras import installation
 from scenic.pipeline import load
 from scenic.runtime.elements.sensors import CameraSensor
 from scenic.runtime.ground.arguments import check_seconds, whole_number
-from scenic.runtime.sampling.report import Exhausted
+from scenic.runtime.sampling.rejection_report import Exhausted
 from scenic.runtime.scenes.scenario import Scenario
 from scenic.runtime.values.values import Orientation, Vector, is_number
-from scenic.simulators.batch import choose_simulator
 from scenic.simulators.cameras import Present
+from scenic.simulators.numbered_simulations import choose_simulator
 from scenic.simulators.results import TerminationType
 from scenic.simulators.simulation import Simulation
 from scenic.simulators.simulator import Simulator

@@ -119,7 +119,7 @@ def _cache() -> InstallationFinding:
 def _rendering() -> InstallationFinding:
     """Return whether an image can be made without a graphics card."""
     # These bring in NumPy and the geometry libraries.
-    from scenic.formats.instances import picture
+    from scenic.formats.mesh_instances import picture
     from scenic.formats.render import render
     from scenic.pipeline import scenarioFromString
 

@@ -16,8 +16,8 @@ from scenic.graph.finite import Finite
 from scenic.graph.node import Node
 from scenic.narrowing_store import contract_once
 from scenic.runtime.regions.unturned import unturned
+from scenic.runtime.sampling.check_planning import Outline
 from scenic.runtime.sampling.checks import NodeCheck
-from scenic.runtime.sampling.planning import Outline
 from scenic.runtime.scenes.sampler import Sampler
 
 if TYPE_CHECKING:

@@ -21,7 +21,7 @@ from scenic.formats.embedding import embedded_courses, embedded_scenes, embedded
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.errors import ParseCompileError, ScenicError
 from scenic.pipeline import scenarioFromString
-from scenic.runtime.sampling.report import Exhausted
+from scenic.runtime.sampling.rejection_report import Exhausted
 from scenic.runtime.scenes.scenario import Scenario
 from scenic.runtime.scenes.scene import Scene
 from scenic.simulators.simulation import Simulation

@@ -35,7 +35,7 @@ from scenic.runtime.python.importing import beside
 from scenic.runtime.python.random_state import is_as, preserved, seed_globals, states
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.spaces import Everywhere, Nowhere, Workspace, everywhere
-from scenic.runtime.sampling.planning import Outline, outline
+from scenic.runtime.sampling.check_planning import Outline, outline
 from scenic.runtime.scenes import scenario as scenarios
 from scenic.runtime.scenes import scene as scenes
 from scenic.runtime.scenes.saving import program_digest
@@ -442,7 +442,7 @@ def _export(scene: Scene, path: Path) -> bool:
     """Write a scene for another program by the ending of the file's name; returns whether that is such an ending."""
     suffix = path.suffix.lower()
     if path.name.lower().endswith(".cr.xml"):
-        from scenic.formats.commonroad.files import write_scene as write_roads
+        from scenic.formats.commonroad.scenario_files import write_scene as write_roads
 
         write_roads(scene, path)
         return True

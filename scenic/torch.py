@@ -17,7 +17,7 @@ from typing import Any
 from scenic.language.errors import RejectionException, UnsupportedError
 from scenic.pipeline import load
 from scenic.runtime.ground.arguments import whole_number
-from scenic.runtime.sampling.report import Exhausted
+from scenic.runtime.sampling.rejection_report import Exhausted
 from scenic.runtime.scenes.scenario import Scenario
 
 try:

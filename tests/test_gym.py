@@ -18,8 +18,8 @@ import gymnasium
 from gymnasium.utils.env_checker import check_env
 
 from scenic.gym import Choice, Continuous, Joints, Moment, ScenicEnv, ScenicVectorEnv, joint_limits
-from scenic.simulators.batch import choose_simulator, simulate_number
 from scenic.simulators.kinematic import SetVelocity, SetWheelSpeeds
+from scenic.simulators.numbered_simulations import choose_simulator, simulate_number
 
 CHASE = """
 from scenic.simulators.kinematic import *

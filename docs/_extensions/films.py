@@ -24,7 +24,7 @@ from scenic.formats.course_pictures import StatePictures, evenly
 from scenic.formats.files import write
 from scenic.formats.lamps import light_colors
 from scenic.pipeline import load
-from scenic.simulators.batch import choose_simulator, simulate_number
+from scenic.simulators.numbered_simulations import choose_simulator, simulate_number
 from scenic.simulators.simulation import OnState
 
 __all__ = ["SCENARIOS", "measured", "simulated"]

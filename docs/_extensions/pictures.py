@@ -14,12 +14,12 @@ from examples.motion import exposed
 from scenic.formats.camera import STANDARD, Outlook, corners, framed, framing
 from scenic.formats.files import write
 from scenic.formats.html import page
-from scenic.formats.instances import picture
 from scenic.formats.labels import observe
+from scenic.formats.mesh_instances import picture
 from scenic.formats.render import render
-from scenic.formats.sensors import viewpoint
+from scenic.formats.scene_cameras import viewpoint
 from scenic.pipeline import load
-from scenic.simulators.batch import choose_simulator, simulate_number
+from scenic.simulators.numbered_simulations import choose_simulator, simulate_number
 
 __all__ = ["Shot", "kept_page", "kept_picture"]
 

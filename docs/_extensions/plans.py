@@ -9,7 +9,7 @@ import PIL.Image
 import PIL.ImageDraw
 import shapely
 
-from scenic.formats.instances import PALETTE
+from scenic.formats.mesh_instances import PALETTE
 
 __all__ = ["Footprint", "drawn", "placed"]
 

@@ -31,7 +31,7 @@ from scenic.cli.main import main
 from scenic.pipeline import load
 from scenic.runtime.scenes.scenario import Scenario
 from scenic.runtime.values.definite import Orientation, Vector
-from scenic.simulators.batch import choose_simulator, simulate_number
+from scenic.simulators.numbered_simulations import choose_simulator, simulate_number
 
 __all__ = ["PageRun", "Programs", "WrongOutputError", "checked", "workplace"]
 

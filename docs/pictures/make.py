@@ -24,7 +24,7 @@ from scenic.formats.camera import Outlook
 from scenic.formats.html import page
 from scenic.formats.labels import observe
 from scenic.formats.png import png
-from scenic.formats.sensors import viewpoint
+from scenic.formats.scene_cameras import viewpoint
 from scenic.language.errors import ScenicSyntaxError
 from scenic.pipeline import load
 

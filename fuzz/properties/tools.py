@@ -13,8 +13,8 @@ from scenic.cli.checking import Checker, CheckTask
 from scenic.cli.render import FORMATS, Report, render
 from scenic.compiler.check import check_text
 from scenic.ide.diagnostics import diagnostics
+from scenic.language.code_selection import Rules
 from scenic.language.diagnostics import Diagnostic
-from scenic.language.selection import Rules
 from scenic.language.source import Source
 from scenic.language.spans import Span
 from scenic.lsp.convert import Encoding, Lines, to_diagnostic

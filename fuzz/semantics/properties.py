@@ -18,7 +18,7 @@ from fuzz.semantics.programs import Program
 from scenic.compiler.check import check_text
 from scenic.failures import diagnose
 from scenic.language.diagnostics import Severity
-from scenic.runtime.sampling.report import Exhausted
+from scenic.runtime.sampling.rejection_report import Exhausted
 from scenic.simulators.dummy import DummySimulator
 
 __all__ = ["PROPERTIES", "Outcome", "Run"]

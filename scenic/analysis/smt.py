@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from scenic.analysis.facts import Fact
-from scenic.analysis.terms import Questions, SolverTerms, Term
+from scenic.analysis.solver_terms import Questions, SolverTerms, Term
 from scenic.dataclass import dataclass
 from scenic.graph.kinds import Kind
 from scenic.graph.node import Graph, Node

@@ -7,10 +7,10 @@ import numpy as np
 from scenic.analysis.finite.explaining import findings, left_to_chance, with_possible_values
 from scenic.analysis.supports import DrawnSupport, places_of, supports
 from scenic.assessment.assessment import Assessment, ValueRow
-from scenic.assessment.drawing import Whereabouts
+from scenic.assessment.box_drawings import Whereabouts
 from scenic.language.spans import Span
 from scenic.narrowing import decision_of
-from scenic.runtime.sampling.report import Exhausted
+from scenic.runtime.sampling.rejection_report import Exhausted
 from scenic.runtime.scenes.scenario import Scenario
 from scenic.runtime.scenes.scene import Scene
 from scenic.runtime.values.values import as_node

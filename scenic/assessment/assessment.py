@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from scenic.analysis.finite.explaining import FiniteFinding, LeftToChance
 from scenic.analysis.supports import DrawnSupport
-from scenic.assessment.drawing import Whereabouts, png, svg
+from scenic.assessment.box_drawings import Whereabouts, png, svg
 from scenic.dataclass import dataclass
 from scenic.language.spans import Span
-from scenic.runtime.sampling.estimating import ComponentEstimate, RequirementEstimate
-from scenic.runtime.sampling.report import Approximation
+from scenic.runtime.sampling.acceptance_rates import ComponentEstimate, RequirementEstimate
+from scenic.runtime.sampling.rejection_report import Approximation
 
 __all__ = ["Assessment", "ValueRow"]
 

@@ -13,7 +13,6 @@ from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Final
 
-from scenic.batch.encoding import Encoder, blocks_of
 from scenic.batch.engines import Engine
 from scenic.batch.folders.folder import WrittenFolder, check_files
 from scenic.batch.folders.lock import lock_beside
@@ -22,10 +21,11 @@ from scenic.batch.manifest import DATASET, NAME, DatasetError, Manifest
 from scenic.batch.part_contents import damage_of, strangers
 from scenic.batch.part_files import TableFile
 from scenic.batch.parts_in_progress import ENTRY, JOURNAL, PartInProgress
+from scenic.batch.scene_bytes import Encoder, blocks_of
 from scenic.batch.scenes import Job, Made, encoded_here, in_processes, method_of
 from scenic.dataclass import dataclass
 from scenic.runtime.ground.context import warn
-from scenic.runtime.sampling.report import Exhausted
+from scenic.runtime.sampling.rejection_report import Exhausted
 from scenic.runtime.scenes.scenario import Scenario
 
 __all__ = ["DatasetRun", "Finished", "Resuming", "make_dataset", "scenes_kept", "write_table"]

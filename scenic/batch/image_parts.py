@@ -19,9 +19,9 @@ from scenic.batch.source_files import texts_of
 from scenic.dataclass import dataclass
 from scenic.formats.coco import INDEX, Photographer, index_of
 from scenic.formats.files import Waiting, write, writing
-from scenic.formats.instances import Surfaces
 from scenic.formats.mesh_files import digest_of
-from scenic.formats.sensors import AbsentCameraError
+from scenic.formats.mesh_instances import Surfaces
+from scenic.formats.scene_cameras import AbsentCameraError
 from scenic.formats.shards import END, member, members
 from scenic.runtime.scenes.scenario import Scenario
 from scenic.runtime.scenes.scene import Scene

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Literal
 
 if TYPE_CHECKING:
-    from scenic.formats.commonroad.files import CommonRoadFile
+    from scenic.formats.commonroad.scenario_files import CommonRoadFile
     from scenic.formats.course_page import PoseTape
     from scenic.formats.openscenario import OpenScenarioFile
     from scenic.formats.trajectories import TrajectoryFile
@@ -38,7 +38,7 @@ def about_file(path: Path, form: Form) -> Any:
 
         return openscenario_about(path)
     if form == "xml":
-        from scenic.formats.commonroad.files import commonroad_about
+        from scenic.formats.commonroad.scenario_files import commonroad_about
 
         return commonroad_about(path)
     with path.open(encoding="utf-8") as stream:
@@ -88,7 +88,7 @@ class SimulationRecord:
 
             self._story = OpenScenarioFile(self._path)
         elif self._path is not None and self._form == "xml":
-            from scenic.formats.commonroad.files import CommonRoadFile
+            from scenic.formats.commonroad.scenario_files import CommonRoadFile
 
             self._story = CommonRoadFile(self._path)
         elif self._path is not None:

@@ -7,7 +7,7 @@ from dataclasses import asdict, field, replace
 from pathlib import Path
 from typing import Any, Final, Self
 
-from scenic.batch.folders.fingerprint import file_digests
+from scenic.batch.folders.file_digests import file_digests
 from scenic.batch.folders.folder import NAME, FolderKind
 from scenic.batch.folders.ranges import Range, part_name, ranges_to_make
 from scenic.batch.portable import versions

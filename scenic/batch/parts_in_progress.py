@@ -7,10 +7,10 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from scenic.batch.encoding import Encoder, blocks_of
 from scenic.batch.folders.ranges import Range
 from scenic.batch.manifest import Manifest, Part
 from scenic.batch.part_files import part_file
+from scenic.batch.scene_bytes import Encoder, blocks_of
 from scenic.batch.scenes import Made, method_of
 from scenic.formats.files import refusing
 from scenic.formats.mesh_files import digest_of

@@ -16,7 +16,7 @@ from pathlib import Path
 from types import CodeType, FunctionType, ModuleType
 from typing import Any, Final
 
-from scenic.batch.folders.fingerprint import file_digests
+from scenic.batch.folders.file_digests import file_digests
 from scenic.language.errors import Located
 from scenic.runtime.scenes.scenario import Scenario
 

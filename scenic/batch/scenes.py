@@ -18,7 +18,7 @@ from scenic.batch.engines import Engine, OverExecutor, Processes
 from scenic.dataclass import dataclass
 from scenic.graph.points import PointSet, Sobol
 from scenic.language.errors import Located, RejectionException
-from scenic.runtime.sampling.report import Exhausted
+from scenic.runtime.sampling.rejection_report import Exhausted
 from scenic.runtime.scenes.scenario import Scenario
 from scenic.runtime.scenes.scene import Scene
 

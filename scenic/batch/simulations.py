@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from scenic.batch.engines import Engine, OverExecutor, Processes
-from scenic.batch.folders.fingerprint import files_of_origin
+from scenic.batch.folders.file_digests import files_of_origin
 from scenic.batch.keeping import Form, SimulationRecord, Watcher, about_file, is_whole
 from scenic.batch.simulation_folders import SimulationFolder
 from scenic.dataclass import dataclass
@@ -20,9 +20,9 @@ from scenic.runtime.ground.arguments import check_seconds, whole_number
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
-    from scenic.runtime.sampling.report import Exhausted
+    from scenic.runtime.sampling.rejection_report import Exhausted
     from scenic.runtime.scenes.scenario import Scenario
-    from scenic.simulators.batch import Numbered
+    from scenic.simulators.numbered_simulations import Numbered
     from scenic.simulators.simulator import Simulator
 
 __all__ = [
@@ -176,7 +176,7 @@ class Simulations:
 
     def _choose(self, name: str | None) -> "Simulator":
         from scenic.runtime.python.importing import beside, forget_stranger
-        from scenic.simulators.batch import choose_simulator
+        from scenic.simulators.numbered_simulations import choose_simulator
 
         # A simulator of the user's own may lie beside the program, like everything that the program imports.
         folder = Path(self._scenario.filename).absolute().parent
@@ -296,7 +296,7 @@ class Simulations:
         Code elsewhere may do so, too: then the simulation is made again. Each simulation decides this for itself, so that
         files do not depend on which simulations a process makes.
         """
-        from scenic.simulators.batch import simulate_number
+        from scenic.simulators.numbered_simulations import simulate_number
         from scenic.simulators.results import NotKeptError
 
         simulate = partial(

@@ -11,19 +11,19 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Final
 
-from scenic.batch.encoding import Encoder
-from scenic.batch.folders.fingerprint import file_digests
+from scenic.batch.folders.file_digests import file_digests
 from scenic.batch.folders.folder import WrittenFolder, check_files
 from scenic.batch.folders.ranges import gaps
 from scenic.batch.image_parts import copy_images, join_indices
 from scenic.batch.manifest import DATASET, DatasetError, Manifest, Part
 from scenic.batch.part_contents import Damage, damages_of, encoded_rows, part_rows, strangers
+from scenic.batch.scene_bytes import Encoder
 from scenic.batch.scene_file_parts import FORMS, copy_scene_files
 from scenic.batch.scenes import Job, method_of, results_of
 from scenic.formats.files import OutputError, make_folder, write
 from scenic.formats.mesh_files import digest_of
 from scenic.runtime.ground.context import warn
-from scenic.runtime.sampling.report import Exhausted
+from scenic.runtime.sampling.rejection_report import Exhausted
 from scenic.runtime.scenes.scenario import Scenario
 
 __all__ = ["Damage", "merge", "part_rows", "verify"]

@@ -13,16 +13,16 @@ import click
 from scenic.cli.batch_parts import BatchPart, check_parts
 from scenic.cli.checking import Checker, CheckOutcome, CheckTask, Fixing, fault
 from scenic.cli.discovery import STANDARD_INPUT, discover
+from scenic.cli.file_changes import watch
 from scenic.cli.options import COUNT, option
 from scenic.cli.output import FINDINGS, exit_code, has_colours, show_diagnostics, summary
 from scenic.cli.render import FORMATS, Report, Sources, render
-from scenic.cli.watching import watch
 from scenic.configuration.project import PLAIN, Configuration, Configurations, read_configuration
 from scenic.dataclass import dataclass
 from scenic.formats.files import write
+from scenic.language.code_selection import EVERYTHING, is_selector, similar_selector
 from scenic.language.diagnostics import Diagnostic, Severity
 from scenic.language.errors import ScenicError
-from scenic.language.selection import EVERYTHING, is_selector, similar_selector
 from scenic.language.source import Source
 
 __all__ = ["check"]

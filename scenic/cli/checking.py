@@ -13,9 +13,9 @@ from scenic.compiler.markdown import SUFFIXES, check_blocks, repair_blocks
 from scenic.compiler.suppression_comments import apply_ignores
 from scenic.compiler.surroundings import SurroundingsOf
 from scenic.dataclass import dataclass
+from scenic.language.code_selection import Rules
 from scenic.language.diagnostics import UNSUPPORTED, Diagnostic, Severity
 from scenic.language.errors import Located
-from scenic.language.selection import Rules
 from scenic.language.source import Source, read_source
 from scenic.project.index import Project
 from scenic.project.surroundings import surroundings_in

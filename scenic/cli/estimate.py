@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from scenic.cli.batch_parts import BatchPart, FileSink, SinkPart, check_parts, places_of, write_files
+from scenic.cli.batch_runs import NOT_ALL, announce_seed, batch_run
 from scenic.cli.options import (
     COUNT,
     PATH,
@@ -24,7 +25,6 @@ from scenic.cli.options import (
     swept_program_options,
 )
 from scenic.cli.output import CLEAN
-from scenic.cli.running import NOT_ALL, announce_seed, batch_run
 from scenic.cli.sinks import check_page
 from scenic.dataclass import dataclass
 from scenic.formats.files import safe_name
@@ -133,7 +133,7 @@ class _EstimateRequest(BatchRequest):
     def runs(self, scenario: "Scenario", seed: int, budget: int | None) -> "Runs":
         """The runs of one setting; ``budget`` is that of a splitting."""
         from scenic.estimation.estimating import Runs
-        from scenic.estimation.following import guide_of
+        from scenic.estimation.importance_sampling import guide_of
         from scenic.estimation.requirements import goals_of
 
         goals = goals_of(scenario, self.requirements, self.objective, self.expression)
@@ -160,7 +160,7 @@ class _EstimateRequest(BatchRequest):
 
 
 def _report(title: str, results: "Mapping[str, Estimate]") -> bytes:
-    from scenic.estimation.report import estimate_page
+    from scenic.estimation.estimate_page import estimate_page
 
     return estimate_page(results, title).encode()
 
@@ -273,7 +273,7 @@ def _both(
 
 def _seed(request: _EstimateRequest) -> tuple[int, bool]:
     """The seed, and whether it was drawn just now."""
-    from scenic.estimation.store import estimates_in, manifest_of
+    from scenic.estimation.estimate_folder import estimates_in, manifest_of
 
     if request.seed is not None:
         return request.seed, False
@@ -285,8 +285,8 @@ def _seed(request: _EstimateRequest) -> tuple[int, bool]:
 
 def _again(request: _EstimateRequest) -> int:
     """Show what the runs in folders tell."""
+    from scenic.estimation.estimate_folder import estimates_in
     from scenic.estimation.estimating import load_estimate
-    from scenic.estimation.store import estimates_in
 
     inner = estimates_in(request.path)
     if request.others or inner in ([], [request.path]):
@@ -306,8 +306,8 @@ def _estimates(
     request: _EstimateRequest, asked: "Asked", programs: "list[tuple[Runs, str]]", places: list[Path]
 ) -> "dict[str, Estimate]":
     """Estimate for each program, and write what is wanted; returns the results by the labels of the programs."""
+    from scenic.estimation.estimate_folder import EstimateFolder
     from scenic.estimation.estimating import Stop, estimate_runs
-    from scenic.estimation.store import EstimateFolder
 
     results: dict[str, Estimate] = {}
     with batch_run(

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from scenic.cli.batch_parts import FileSink, SinkPart, check_parts, places_of, write_files
+from scenic.cli.batch_runs import NOT_ALL, announce_seed, batch_run
 from scenic.cli.options import (
     COUNT,
     PATH,
@@ -24,7 +25,6 @@ from scenic.cli.options import (
     swept_program_options,
 )
 from scenic.cli.output import CLEAN
-from scenic.cli.running import NOT_ALL, announce_seed, batch_run
 from scenic.cli.sinks import check_page
 from scenic.dataclass import dataclass
 from scenic.formats.files import safe_name, write
@@ -85,7 +85,7 @@ class _FalsifyRequest(BatchRequest):
 
 
 def _report(page: Path, title: str, results: "Mapping[str, FalsificationResult]") -> bytes:
-    from scenic.falsification.report import report_page
+    from scenic.falsification.search_page import report_page
 
     return report_page(results, title, links_from=page.parent).encode()
 
@@ -143,7 +143,7 @@ def falsify(**options: Any) -> int:
     places = places_of(request, _FILES)
     if request.path.is_dir():
         return _report_again(request)
-    from scenic.falsification.store import folders_of, manifest_of
+    from scenic.falsification.search_folder import folders_of, manifest_of
 
     seed, output = request.seed, request.output
     if request.resume and seed is None and output is not None:
@@ -166,7 +166,7 @@ def falsify(**options: Any) -> int:
 
 def _report_again(request: _FalsifyRequest) -> int:
     """Make the report of a search in a folder once more."""
-    from scenic.falsification.report import load_results
+    from scenic.falsification.search_page import load_results
 
     page = request.report or request.path / "report.html"
     write(page, _report(page, request.path.name, load_results(request.path)))
@@ -179,7 +179,7 @@ def _search(
 ) -> "dict[str, FalsificationResult]":
     """Search each program, and write what is wanted; returns the results by the labels of the programs."""
     from scenic.falsification.search import SearchLimits, search
-    from scenic.falsification.store import SearchFolder
+    from scenic.falsification.search_folder import SearchFolder
 
     results: dict[str, FalsificationResult] = {}
     with batch_run(

@@ -16,8 +16,8 @@ from scenic.cli.output import FINDINGS, exit_code, show_diagnostics
 from scenic.configuration.project import Configurations
 from scenic.language.diagnostics import Diagnostic
 from scenic.migration.embedded import SUFFIXES
-from scenic.migration.files import File, convert_files, convert_text, lines_of, write_file
-from scenic.migration.rules import RULES
+from scenic.migration.migrated_files import File, convert_files, convert_text, lines_of, write_file
+from scenic.migration.migration_rules import RULES
 
 __all__ = ["migrate"]
 

@@ -39,7 +39,7 @@ def preview(
     from scenic.failures import diagnose
     from scenic.formats.html import Page
     from scenic.pipeline import scenarioFromString
-    from scenic.runtime.sampling.report import Exhausted
+    from scenic.runtime.sampling.rejection_report import Exhausted
 
     page = Page(os.path.basename(filename))
     missing: list[Exhausted] = []

@@ -9,6 +9,7 @@ from urllib.parse import quote
 
 import click
 
+from scenic.cli.batch_runs import NOT_ALL
 from scenic.cli.options import (
     COUNT,
     PATH,
@@ -20,7 +21,6 @@ from scenic.cli.options import (
     simulator_option,
 )
 from scenic.cli.output import CLEAN
-from scenic.cli.running import NOT_ALL
 from scenic.cli.sinks import OutputChoiceError, check_page
 
 if TYPE_CHECKING:
@@ -200,7 +200,7 @@ def _write_page(view: Path, page: str, follow: str | None, *, opened: bool) -> N
 def _camera(outlook: Mapping[str, Any], follow: str | None, around: float | None) -> "Outlook":
     """The camera of images and films, which may follow an object."""
     from scenic.formats.camera import Outlook
-    from scenic.formats.following import BEHIND
+    from scenic.formats.chase_cameras import BEHIND
 
     if follow is None:
         return Outlook(**outlook)

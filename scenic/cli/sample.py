@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from scenic.cli import sinks
+from scenic.cli.batch_runs import NOT_ALL
 from scenic.cli.output import CLEAN, has_colours
-from scenic.cli.running import NOT_ALL
 from scenic.cli.sample_options import SampleRequest, sample_options
 from scenic.cli.sample_parts import check_sample, sink_parts
 from scenic.cli.time_limit import PATIENCE, limited
@@ -48,7 +48,7 @@ def sample(**options: Any) -> int:
     if request.profile:
         return _profiled(scenario, request, deadline)
     if request.settle is not None or request.form in ("mjcf", "sdf"):
-        from scenic.cli.running import find_convex_parts
+        from scenic.cli.batch_runs import find_convex_parts
 
         find_convex_parts(scenario)
     from scenic.cli.sampling import sample_into_sinks

@@ -10,12 +10,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from scenic.batch.engines import Engine
-from scenic.batch.folders.fingerprint import digest_of_files, file_digests
+from scenic.batch.folders.file_digests import digest_of_files, file_digests
 from scenic.batch.folders.lock import locked
 from scenic.batch.scenes import Job, in_processes, method_of, results_of
 from scenic.cli import sinks
+from scenic.cli.batch_runs import announce_seed, batch_run
 from scenic.cli.output import has_colours
-from scenic.cli.running import announce_seed, batch_run
 from scenic.cli.sample_options import SampleRequest
 from scenic.cli.sample_parts import SINKS, sink_parts
 from scenic.dataclass import dataclass
@@ -23,7 +23,7 @@ from scenic.formats.files import OutputError
 from scenic.formats.growing import GrowingFile
 from scenic.formats.json_lines import SceneLines
 from scenic.formats.resuming import check_remade, continued
-from scenic.runtime.sampling.report import Exhausted
+from scenic.runtime.sampling.rejection_report import Exhausted
 from scenic.runtime.scenes.scenario import Scenario
 
 if TYPE_CHECKING:
@@ -264,7 +264,7 @@ def _show_tables(batch: _Batch, takers: "list[sinks.Take]") -> None:
     """Print scenes as tables, and the ways to save them."""
     from rich.console import Console
 
-    from scenic.cli.render.scenes import render_scene
+    from scenic.cli.render.scene_listing import render_scene
 
     console = Console(no_color=not has_colours(sys.stdout), highlight=False)
     for scene in batch.scenes():

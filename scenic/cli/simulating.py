@@ -12,9 +12,9 @@ from scenic.batch.simulation_folders import seed_of_simulations
 from scenic.batch.simulations import SimulationRow, Simulations, SimulationSettings, nothing_happens
 from scenic.batch.summaries import SettingRuns, csv_of, plot, summary
 from scenic.cli.batch_parts import FileSink, places_of, write_files
+from scenic.cli.batch_runs import NOT_ALL, Advance, announce_seed, batch_run, find_convex_parts
 from scenic.cli.options import settings_of
 from scenic.cli.output import CLEAN, FINDINGS, show_diagnostics
-from scenic.cli.running import NOT_ALL, Advance, announce_seed, batch_run, find_convex_parts
 from scenic.cli.simulate_options import FORMS, SimulateRequest
 from scenic.cli.sinks import check_page
 from scenic.formats.course_page import course_page

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from scenic.formats.files import check_folder, check_writable, numbered, write
-from scenic.formats.scenes import Scene
+from scenic.formats.scene_protocols import Scene
 from scenic.language.errors import Located
 from scenic.runtime.ground.files import is_special
 
@@ -221,7 +221,7 @@ def _robot_files(path: Path, count: int) -> Iterator[Take]:
 
 @contextmanager
 def _road_files(path: Path, count: int) -> Iterator[Take]:
-    from scenic.formats.commonroad.files import write_scene
+    from scenic.formats.commonroad.scenario_files import write_scene
 
     stem = path.name[: -len(_COMMONROAD)]
 

@@ -79,7 +79,7 @@ def try_command(
     2 wrong usage.
     """
     from scenic.trying.answer import Limits, Trial
-    from scenic.trying.workers import tried
+    from scenic.trying.trial_processes import tried
 
     files = discover(paths, Configurations(PLAIN)).files
     if form == "object" and len(files) > 1:

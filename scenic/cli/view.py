@@ -105,7 +105,7 @@ def _deliver(file: str, scenes: Iterable[ReadScene], chosen: Sequence[sinks.Sink
 
 def _watch(program: Path, count: int, seed: int, no_browser: bool) -> int:
     """Serve the page that follows a program, until the user ends it."""
-    from scenic.playground.watching import Watch, served
+    from scenic.playground.live_page import Watch, served
 
     if not program.is_file():
         raise click.UsageError(f"there is no program '{program}' to watch")

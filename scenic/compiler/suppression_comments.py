@@ -17,8 +17,8 @@ from scenic.compiler.generated import WORDS
 from scenic.compiler.lexer import lex
 from scenic.compiler.tokens import DEDENT, ENDMARKER, INDENT, NEWLINE, Tokens
 from scenic.dataclass import dataclass
+from scenic.language.code_selection import is_lasting, is_selector, similar_selector
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Severity
-from scenic.language.selection import is_lasting, is_selector, similar_selector
 from scenic.language.source import Source
 from scenic.language.spans import Span
 from scenic.language.spelling import nearest

@@ -13,9 +13,9 @@ from typing import Any, Final
 from scenic.configuration.globs import matches
 from scenic.configuration.toml_places import place_in_toml
 from scenic.dataclass import dataclass
+from scenic.language.code_selection import EVERYTHING, Rules, is_selector, similar_selector
 from scenic.language.diagnostics import Diagnostic, Severity
 from scenic.language.errors import ScenicError
-from scenic.language.selection import EVERYTHING, Rules, is_selector, similar_selector
 from scenic.language.source import Source, read_source
 from scenic.language.spans import Span
 from scenic.language.spelling import nearest

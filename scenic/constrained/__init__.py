@@ -1,6 +1,6 @@
 """Grammars for constrained decoding: which texts a language model may write.
 
-They are made of the rules of the parser, without ordered choice (`scenic.constrained.rules`), with the blanks and line
+They are made of the rules of the parser, without ordered choice (`scenic.constrained.grammar_rules`), with the blanks and line
 ends between tokens (`scenic.constrained.layout`), in the notations of the engines (`scenic.constrained.writing`).
 """
 
@@ -12,8 +12,8 @@ from typing import Any, Final
 
 from scenic.compiler.generated import HARD_KEYWORDS
 from scenic.compiler.syntax import Choice, Item, ListOf, Many, Optional, Row, RuleReference, TokenKind, Word
+from scenic.constrained.grammar_rules import read_rules
 from scenic.constrained.layout import Laid, lay_out
-from scenic.constrained.rules import read_rules
 from scenic.constrained.terminals import Tokens, tokens
 from scenic.constrained.worlds import read_world, restricted, restricted_tokens, worlds
 from scenic.constrained.writing import write_ebnf, write_gbnf, write_lark

@@ -10,6 +10,7 @@ from typing import Final
 
 from scenic.compiler import syntax
 from scenic.compiler.syntax import TokenKind, Word
+from scenic.constrained.grammar_rules import Edge, EdgeFinder, Edges, Rules
 from scenic.constrained.items import (
     Line,
     TextChoice,
@@ -21,7 +22,6 @@ from scenic.constrained.items import (
     Variant,
     within,
 )
-from scenic.constrained.rules import Edge, EdgeFinder, Edges, Rules
 from scenic.dataclass import dataclass
 
 __all__ = ["Laid", "lay_out"]

@@ -13,8 +13,8 @@ import scenic
 from scenic.compiler.semantics.classes import Classes
 from scenic.compiler.semantics.symbols import SymbolKind, symbol_of_exported
 from scenic.compiler.syntax import Item, ListOf, Optional, Row, RuleReference, TokenKind, Word
+from scenic.constrained.grammar_rules import Rules
 from scenic.constrained.items import CharacterClass, TextChoice, TextItem, TextMany
-from scenic.constrained.rules import Rules
 from scenic.constrained.terminals import Tokens, tokens
 from scenic.dataclass import dataclass
 from scenic.language.properties import CLASSES

@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import Final
 
 from scenic.analysis.contraction import contract
+from scenic.analysis.fact_diagnostics import prove, prove_dead, prove_in_time
 from scenic.analysis.finite.explaining import contradiction, narrowed_values
-from scenic.analysis.report import prove, prove_dead, prove_in_time
-from scenic.analysis.terms import has_solver
+from scenic.analysis.solver_terms import has_solver
 from scenic.deep.dead_branches import prove_branches
 from scenic.failures import diagnose
 from scenic.graph.domain import Domain

@@ -10,7 +10,7 @@ from scenic.batch.engines import Engine
 from scenic.dataclass import dataclass
 from scenic.falsification.evaluating import Evaluation, evaluated
 from scenic.falsification.lineages import Ancestry, Lineage, LineageStep
-from scenic.statistics.intervals import Interval
+from scenic.statistics.confidence_intervals import Interval
 from scenic.statistics.splitting import (
     Move,
     Repetition,

@@ -8,11 +8,11 @@ from typing import Any, Final, Literal
 
 from scenic.dataclass import dataclass
 from scenic.estimation.branching import Rare
-from scenic.estimation.following import Weighted
+from scenic.estimation.importance_sampling import Weighted
 from scenic.formats.json_lines import real
 from scenic.statistics.comparisons import PairedComparison
-from scenic.statistics.intervals import Interval, exact_interval
-from scenic.statistics.sequences import sequence_interval
+from scenic.statistics.confidence_intervals import Interval, exact_interval
+from scenic.statistics.confidence_sequences import sequence_interval
 from scenic.statistics.sequential_test import BoundTest
 
 __all__ = ["Asked", "Estimate", "Method", "Tally", "requirement_tallies"]

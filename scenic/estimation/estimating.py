@@ -17,20 +17,20 @@ from scenic.dataclass import dataclass
 from scenic.estimation.asking import asked_of
 from scenic.estimation.branching import Branching, is_of_law, rare_of, split
 from scenic.estimation.estimate import Asked, Estimate, Tally, requirement_tallies
-from scenic.estimation.following import Guide, guide_of, weighted_of
+from scenic.estimation.estimate_folder import EstimateFolder, joined, manifest_of
+from scenic.estimation.importance_sampling import Guide, guide_of, weighted_of
 from scenic.estimation.requirements import EstimateError, check_labels, goals_of, requirement_labels
-from scenic.estimation.store import EstimateFolder, joined, manifest_of
 from scenic.falsification.comparing import row_departures
 from scenic.falsification.evaluating import Evaluation, Failures, RunTask, evaluated, evaluated_together
 from scenic.falsification.lineages import Ancestry, Held, Lineage
 from scenic.falsification.objectives import Objective
 from scenic.falsification.search import SearchPlan
+from scenic.falsification.search_folder import read_rows
 from scenic.falsification.space import Space
-from scenic.falsification.store import read_rows
 from scenic.runtime.ground.arguments import check_seconds, whole_number
-from scenic.runtime.sampling.report import Exhausted
+from scenic.runtime.sampling.rejection_report import Exhausted
 from scenic.runtime.scenes.sampler import DEFAULT_ATTEMPTS
-from scenic.statistics.sequences import is_checked
+from scenic.statistics.confidence_sequences import is_checked
 from scenic.statistics.splitting import Move, Splitting
 
 if TYPE_CHECKING:

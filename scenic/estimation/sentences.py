@@ -6,7 +6,7 @@ from typing import Final
 
 from scenic.estimation.branching import Rare
 from scenic.estimation.estimate import Estimate, Tally
-from scenic.statistics.intervals import Interval
+from scenic.statistics.confidence_intervals import Interval
 from scenic.statistics.weighting import LEAST_EFFECTIVE
 
 __all__ = ["comparison_words", "counted", "described", "headline", "method_words", "notes", "percent"]

@@ -11,14 +11,14 @@ import numpy as np
 from scenic.batch.keeping import SimulationRecord, Watcher
 from scenic.dataclass import dataclass
 from scenic.falsification.objectives import Objective, ObjectiveError
+from scenic.falsification.search_folder import number
 from scenic.falsification.space import Floats, Space
-from scenic.falsification.store import number
 from scenic.formats.files import OutputError, make_folder, refusing, write
 from scenic.formats.trajectories import course_document
 from scenic.graph.draws import Words
 from scenic.language.errors import Located
 from scenic.runtime.dynamics.chosen_draws import Sourcing
-from scenic.runtime.sampling.report import Exhausted
+from scenic.runtime.sampling.rejection_report import Exhausted
 from scenic.runtime.scenes.sampler import DEFAULT_ATTEMPTS
 from scenic.runtime.scenes.scene import Scene
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from scenic.falsification.samplers import RESTORABLE, SEQUENCES, make_sampler
-from scenic.falsification.samplers.protocol import NoMorePointsError, Sampler
+from scenic.falsification.samplers.sampler import NoMorePointsError, Sampler
 from scenic.falsification.space import Coordinate, Floats, Space, space_of
 from scenic.language.errors import InvalidScenarioError, ScenicWarning
 from scenic.runtime.python.random_state import preserved

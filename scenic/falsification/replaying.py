@@ -6,7 +6,7 @@ from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, cast
 
-from scenic.batch.folders.fingerprint import file_digests
+from scenic.batch.folders.file_digests import file_digests
 from scenic.batch.folders.folder import check_files
 from scenic.batch.keeping import Form, about_file
 from scenic.batch.simulations import Simulations, SimulationSettings
@@ -15,8 +15,8 @@ from scenic.falsification.comparing import file_departures, row_departures
 from scenic.falsification.evaluating import Evaluation, RunTask
 from scenic.falsification.lineages import Ancestry, Held, Lineage, lineages_of
 from scenic.falsification.objectives import Objective, ObjectiveError
+from scenic.falsification.search_folder import folders_of, kind_of, read_rows
 from scenic.falsification.space import space_of
-from scenic.falsification.store import folders_of, kind_of, read_rows
 from scenic.language.errors import Located, MissingFileError
 
 if TYPE_CHECKING:

@@ -7,10 +7,10 @@ import numpy as np
 
 from scenic.falsification.objectives import Objective
 from scenic.falsification.samplers import make_sampler
-from scenic.falsification.samplers.protocol import NoMorePointsError as NoMorePoints
+from scenic.falsification.samplers.sampler import NoMorePointsError as NoMorePoints
 from scenic.falsification.space import space_of
 from scenic.language.errors import InvalidScenarioError
-from scenic.runtime.sampling.report import Exhausted
+from scenic.runtime.sampling.rejection_report import Exhausted
 from scenic.runtime.scenes.scene import Scene
 
 if TYPE_CHECKING:

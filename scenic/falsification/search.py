@@ -12,17 +12,17 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from scenic.batch.engines import Engine, Processes
-from scenic.batch.folders.fingerprint import files_of_origin
+from scenic.batch.folders.file_digests import files_of_origin
 from scenic.batch.simulations import Simulations, SimulationSettings
 from scenic.dataclass import dataclass
 from scenic.falsification.evaluating import Evaluation, Failures, RunTask, SearchError, evaluated
 from scenic.falsification.objectives import Objective
 from scenic.falsification.samplers import make_sampler
-from scenic.falsification.samplers.protocol import NoMorePointsError
+from scenic.falsification.samplers.sampler import NoMorePointsError
+from scenic.falsification.search_folder import SearchFolder
 from scenic.falsification.space import Floats, Space, space_of, worded
-from scenic.falsification.store import SearchFolder
 from scenic.language.errors import InvalidScenarioError
-from scenic.statistics.intervals import exact_interval
+from scenic.statistics.confidence_intervals import exact_interval
 
 if TYPE_CHECKING:
     from scenic.runtime.scenes.scenario import Scenario

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from scenic.dataclass import dataclass
 from scenic.graph.operations.distributions import FIRST, LAST
-from scenic.graph.operations.normal import conditioned_cumulative, conditioned_quantile
+from scenic.graph.operations.normal_law import conditioned_cumulative, conditioned_quantile
 from scenic.runtime.ground.choosable import Choosable
 
 if TYPE_CHECKING:

@@ -1,5 +1,5 @@
 """Output formats of sampled scenes: JSON Lines, GLB, an HTML page, PNG images.
 
-Everything here reads scenes through the protocols of :mod:`scenic.formats.scenes` and writes complete files or
+Everything here reads scenes through the protocols of :mod:`scenic.formats.scene_protocols` and writes complete files or
 none. Nothing here samples, compiles or prints.
 """

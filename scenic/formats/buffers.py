@@ -5,7 +5,7 @@ import numpy.typing as npt
 
 from scenic.dataclass import dataclass
 from scenic.formats.camera import Camera
-from scenic.formats.instances import Array
+from scenic.formats.mesh_instances import Array
 from scenic.formats.stage import GROUND, SKY, Stage
 from scenic.runtime.geometry.meshes.embree import RayScene, Singles
 

@@ -6,9 +6,9 @@ from itertools import product
 import numpy as np
 
 from scenic.dataclass import dataclass
-from scenic.formats.instances import Array, Instance
+from scenic.formats.mesh_instances import Array, Instance
 from scenic.formats.regions import bounds as workspace_bounds
-from scenic.formats.scenes import Scene
+from scenic.formats.scene_protocols import Scene
 
 FIELD_OF_VIEW = np.radians(38)
 """The vertical opening angle."""

@@ -15,12 +15,12 @@ import numpy.typing as npt
 
 from scenic.dataclass import dataclass
 from scenic.formats.files import safe_name, write
-from scenic.formats.instances import Gallery, Surfaces
 from scenic.formats.labels import Observation, document, observe
+from scenic.formats.mesh_instances import Gallery, Surfaces
 from scenic.formats.overlay import overlay
 from scenic.formats.png import encoded
-from scenic.formats.scenes import Scene
-from scenic.formats.sensors import viewpoint
+from scenic.formats.scene_cameras import viewpoint
+from scenic.formats.scene_protocols import Scene
 
 __all__ = ["INDEX", "LabelledImages", "Photographer", "Shot", "index_of", "millimetres", "run_lengths"]
 

@@ -12,15 +12,15 @@ import numpy as np
 import numpy.typing as npt
 
 from scenic.formats.camera import STANDARD, Outlook, corners, framed, framing
+from scenic.formats.chase_cameras import Track
 from scenic.formats.course_page import PoseTape, ShownCourse
 from scenic.formats.files import check_writable, write
-from scenic.formats.following import Track
 from scenic.formats.imaging import require_pillow
-from scenic.formats.instances import Gallery, Instance, Picture, lit, resting
 from scenic.formats.lamps import first_colors
+from scenic.formats.mesh_instances import Gallery, Instance, Picture, lit, resting
 from scenic.formats.png import encoded
 from scenic.formats.render import SIZE, render
-from scenic.formats.scenes import Scene
+from scenic.formats.scene_protocols import Scene
 from scenic.formats.textures import placed_errors
 from scenic.formats.trajectories import Course
 from scenic.runtime.dynamics.series import Film

@@ -14,7 +14,7 @@ from scenic.formats.html import page
 from scenic.formats.imaging import MissingLibraryError
 from scenic.formats.lamps import NO_COLORS
 from scenic.formats.png import png
-from scenic.formats.scenes import Scene
+from scenic.formats.scene_protocols import Scene
 
 __all__ = ["embedded_courses", "embedded_scenes", "embedded_simulation", "scene_bundle", "table"]
 

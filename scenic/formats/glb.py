@@ -14,11 +14,11 @@ import numpy as np
 import numpy.typing as npt
 
 from scenic.formats.image_coordinates import image_coordinates
-from scenic.formats.instances import Instance, Surface, distinct_labels, picture
+from scenic.formats.mesh_instances import Instance, Surface, distinct_labels, picture
 from scenic.formats.poses import Four, Triple
+from scenic.formats.scene_cameras import viewpoints
+from scenic.formats.scene_protocols import Scene
 from scenic.formats.scenery import scenery_of
-from scenic.formats.scenes import Scene
-from scenic.formats.sensors import viewpoints
 from scenic.formats.textures import ImageTexture, placed_errors, texture_of
 from scenic.graph import quaternions
 

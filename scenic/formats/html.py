@@ -16,12 +16,12 @@ import numpy as np
 import numpy.typing as npt
 
 from scenic.formats.colors import linear
-from scenic.formats.instances import Array, Gallery, GroundPiece, Instance, Surface, places_of, resting
 from scenic.formats.json_lines import plain
 from scenic.formats.lamps import COLORS, color_numbers, first_colors
+from scenic.formats.mesh_instances import Array, Gallery, GroundPiece, Instance, Surface, places_of, resting
 from scenic.formats.poses import euler_angles, rotation_matrix
 from scenic.formats.regions import outlines, view_outline
-from scenic.formats.scenes import Scene
+from scenic.formats.scene_protocols import Scene
 from scenic.language.properties import properties_of
 
 _MOST_POINTS: Final = 1000

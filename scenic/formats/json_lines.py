@@ -11,7 +11,7 @@ import numpy as np
 
 from scenic.formats.mesh_files import MeshPaths
 from scenic.formats.poses import euler_angles, quaternion_of
-from scenic.formats.scenes import Origin, Scene, SceneObject
+from scenic.formats.scene_protocols import Origin, Scene, SceneObject
 from scenic.runtime.instances.objects import Object
 
 FORMAT = "scenic-scene"

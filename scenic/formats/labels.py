@@ -14,12 +14,12 @@ import numpy.typing as npt
 
 from scenic.dataclass import dataclass
 from scenic.formats.buffers import Lens, seen
-from scenic.formats.instances import Array, Gallery, Instance
+from scenic.formats.mesh_instances import Array, Gallery, Instance
 from scenic.formats.poses import euler_angles
 from scenic.formats.render import paint
+from scenic.formats.scene_cameras import Viewpoint
+from scenic.formats.scene_protocols import Scene, SceneObject
 from scenic.formats.scenery import scenery_of
-from scenic.formats.scenes import Scene, SceneObject
-from scenic.formats.sensors import Viewpoint
 from scenic.formats.stage import Stage
 from scenic.formats.textures import ImageTexture, placed_errors, texture_of
 from scenic.runtime.geometry.meshes.bodies import Body
@@ -27,7 +27,7 @@ from scenic.runtime.geometry.meshes.mesh import Mesh
 from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.geometry.views.hits import place
 from scenic.runtime.geometry.views.observers import CORNERS, Views
-from scenic.runtime.geometry.views.obstacles import Occluder
+from scenic.runtime.geometry.views.occluders import Occluder
 from scenic.runtime.geometry.views.seen_bodies import sees_bodies
 
 DEFAULT_RANGE = 50.0

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from scenic.formats.scenes import ShapeSource
+from scenic.formats.scene_protocols import ShapeSource
 from scenic.language.errors import Located
 
 __all__ = ["ChangedMeshError", "MeshPaths", "check_unchanged", "digest_of", "resolved"]

@@ -9,9 +9,9 @@ from typing import Final
 
 import numpy as np
 
-from scenic.formats.instances import Instance, Surface, distinct_labels, picture
+from scenic.formats.mesh_instances import Instance, Surface, distinct_labels, picture
 from scenic.formats.poses import Four
-from scenic.formats.scenes import Scene
+from scenic.formats.scene_protocols import Scene
 
 _DIGITS: Final = ".9g"
 

@@ -6,8 +6,8 @@ import numpy as np
 import numpy.typing as npt
 
 from scenic.formats.imaging import require_pillow
-from scenic.formats.instances import PALETTE
 from scenic.formats.labels import Observation
+from scenic.formats.mesh_instances import PALETTE
 
 __all__ = ["overlay"]
 

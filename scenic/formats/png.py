@@ -9,9 +9,9 @@ import numpy.typing as npt
 
 from scenic.formats.camera import STANDARD, Outlook, framed, framing
 from scenic.formats.imaging import require_pillow
-from scenic.formats.instances import picture, resting
+from scenic.formats.mesh_instances import picture, resting
 from scenic.formats.render import SIZE, render
-from scenic.formats.scenes import Scene
+from scenic.formats.scene_protocols import Scene
 from scenic.formats.textures import placed_errors
 
 _EFFORT: Final = 1

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from scenic.formats.scenes import SceneObject
+from scenic.formats.scene_protocols import SceneObject
 
 Triple = tuple[float, float, float]
 Four = tuple[float, float, float, float]

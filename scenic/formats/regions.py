@@ -7,7 +7,7 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from scenic.formats.instances import Array
+from scenic.formats.mesh_instances import Array
 from scenic.formats.poses import rotation_matrix
 from scenic.runtime.geometry.meshes.mesh import Mesh
 from scenic.runtime.regions.base import Region

@@ -16,8 +16,8 @@ from scenic.formats.backdrop import ground_color, sky_color
 from scenic.formats.buffers import Buffer, Groups, Lens, Seen, first_groups, grounded, look
 from scenic.formats.camera import Camera, corners, framing
 from scenic.formats.colors import decoded, encoded
-from scenic.formats.instances import Array, Picture
 from scenic.formats.lighting import Index, Light, coarse_light, fine_light, own_light
+from scenic.formats.mesh_instances import Array, Picture
 from scenic.formats.scenery import scenery_of
 from scenic.formats.stage import GROUND, SKY, Stage
 from scenic.runtime.geometry.meshes.embree import Singles

@@ -7,7 +7,7 @@ from typing import Any
 
 from scenic.formats.mesh_files import ChangedMeshError, check_unchanged
 from scenic.formats.reading import ReadObject, ReadScene
-from scenic.formats.scenes import Shape
+from scenic.formats.scene_protocols import Shape
 from scenic.language.errors import Located, MeshError
 from scenic.runtime.shapes.shapes import BoxShape, MeshShape, primitive_of
 from scenic.runtime.values.values import Orientation, Vector

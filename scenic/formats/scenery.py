@@ -14,7 +14,7 @@ from typing import Any, Final
 import numpy as np
 
 from scenic.dataclass import dataclass
-from scenic.formats.instances import Array
+from scenic.formats.mesh_instances import Array
 from scenic.language.errors import Located
 
 __all__ = ["USUAL", "Scenery", "SceneryError", "scenery_of"]

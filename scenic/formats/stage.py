@@ -14,7 +14,7 @@ import numpy.typing as npt
 from scenic.dataclass import dataclass
 from scenic.formats.camera import corners, ground_height
 from scenic.formats.colors import linear
-from scenic.formats.instances import Array, GroundPiece, Instance, Surface
+from scenic.formats.mesh_instances import Array, GroundPiece, Instance, Surface
 from scenic.formats.poses import rotation_matrix
 from scenic.formats.scenery import USUAL, Scenery
 from scenic.formats.textures import ImageTexture, Texture, TextureError, texture_of

@@ -14,8 +14,8 @@ import numpy.typing as npt
 from scenic.dataclass import dataclass
 from scenic.formats.camera import corners, ground_height
 from scenic.formats.files import make_folder, write
-from scenic.formats.instances import Instance, distinct_labels, picture
-from scenic.formats.scenes import Scene
+from scenic.formats.mesh_instances import Instance, distinct_labels, picture
+from scenic.formats.scene_protocols import Scene
 from scenic.formats.webots_reading import WORLD_PARAMETER, WorldFile, read_world
 from scenic.language.errors import ScenicValueError
 

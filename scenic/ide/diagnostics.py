@@ -3,8 +3,8 @@
 from collections.abc import Callable
 
 from scenic.ide.snapshot import Cancelled, Snapshot
+from scenic.language.code_selection import Rules
 from scenic.language.diagnostics import Diagnostic
-from scenic.language.selection import Rules
 from scenic.project.index import Project
 from scenic.project.surroundings import surroundings_in
 

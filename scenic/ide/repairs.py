@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 from scenic.compiler.fixes import repair
 from scenic.ide.snapshot import Snapshot
+from scenic.language.code_selection import Rules, is_lasting
 from scenic.language.diagnostics import Diagnostic, Edit, Severity
-from scenic.language.selection import Rules, is_lasting
 from scenic.language.spans import Span
 from scenic.project.index import Project
 from scenic.project.surroundings import surroundings_in

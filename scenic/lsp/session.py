@@ -16,8 +16,8 @@ from scenic.compiler.semantics.modules import Module
 from scenic.configuration.project import Configurations
 from scenic.ide.remarks import Remarks
 from scenic.ide.snapshot import PythonSnapshot, Snapshot
+from scenic.language.code_selection import Rules
 from scenic.language.errors import ScenicError
-from scenic.language.selection import Rules
 from scenic.language.source import Source, read_source
 from scenic.language.spans import Span
 from scenic.lsp.convert import Encoding, Lines

@@ -95,7 +95,7 @@ class Programs:
 
     def migrate(self, text: str, filename: str) -> dict[str, Any]:
         """A program of Scenic 2 in Scenic 3, with notes about the changes and about what is left to do."""
-        from scenic.migration.files import convert_text
+        from scenic.migration.migrated_files import convert_text
 
         converted = convert_text(self.accept(text), self.place(filename))
         if converted.problem is not None:

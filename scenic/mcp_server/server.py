@@ -29,7 +29,7 @@ from scenic.mcp_server.reference import (
     similar_topic,
 )
 from scenic.mcp_server.results import Answer, Checked, Examples, Fixed, Formatted, Migrated, Text
-from scenic.mcp_server.running import RunLimitError, run_command
+from scenic.mcp_server.subprocesses import RunLimitError, run_command
 
 __all__ = ["build_server"]
 

@@ -13,7 +13,7 @@ from scenic.language.properties import CLASSES
 from scenic.language.source import Source, read_source
 from scenic.migration.moved import MOVED_MODULES
 from scenic.migration.texts import Token, tokens_of
-from scenic.project.search import Finder
+from scenic.project.module_search import Finder
 
 __all__ = ["ClassInfo", "Library", "ModuleNames", "definitions"]
 

@@ -6,14 +6,14 @@ from scenic.language.diagnostics import Diagnostic, Severity
 from scenic.language.source import Source
 from scenic.migration.class_names import Library
 from scenic.migration.expressions import rewrite_expressions
-from scenic.migration.instances import Dialect, dialect_of, unknown_classes
-from scenic.migration.maps import MapFiles
+from scenic.migration.migration_rules import Note
+from scenic.migration.missing_new import Dialect, dialect_of, unknown_classes
+from scenic.migration.moved_files import MapFiles
 from scenic.migration.pieces import TextPiece
-from scenic.migration.rules import Note
 from scenic.migration.specifiers import rewrite_specifiers
 from scenic.migration.statements import rewrite_statements
 from scenic.migration.texts import TextEdit, edited, restored, tokens_of
-from scenic.migration.words import rewritten_words
+from scenic.migration.word_rewrites import rewritten_words
 
 __all__ = ["Converted", "Converter"]
 

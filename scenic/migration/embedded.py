@@ -10,7 +10,7 @@ from typing import Final
 
 from scenic.dataclass import dataclass
 from scenic.migration.converting import Converted
-from scenic.migration.rules import Note, decision
+from scenic.migration.migration_rules import Note, decision
 from scenic.migration.texts import TextEdit, edited
 
 __all__ = ["SUFFIXES", "convert_embedded"]

@@ -10,8 +10,8 @@ from scenic.compiler.traversal import walk
 from scenic.dataclass import dataclass
 from scenic.language.source import Source
 from scenic.migration.class_names import ClassInfo, ModuleNames
-from scenic.migration.maps import MapFiles
-from scenic.migration.rules import Note, decision
+from scenic.migration.migration_rules import Note, decision
+from scenic.migration.moved_files import MapFiles
 from scenic.migration.texts import TextEdit, line_starts
 
 __all__ = ["TextPiece"]

@@ -4,8 +4,8 @@ import ast
 import warnings
 from collections.abc import Iterator
 
+from scenic.migration.migration_rules import Note, decision
 from scenic.migration.moved import PYTHON_API
-from scenic.migration.rules import Note, decision
 
 __all__ = ["old_names"]
 

@@ -8,11 +8,11 @@ from typing import Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.semantics.modules import ModuleKind
-from scenic.migration.maps import SUFFIXES
 from scenic.migration.moved import LOST_CLASSES, MAP_LOADERS, MAP_LOADING, MOVED_MODULES, PARAMETERS
+from scenic.migration.moved_files import SUFFIXES
 from scenic.migration.pieces import TextPiece
 from scenic.migration.texts import TextEdit
-from scenic.project.search import Finder
+from scenic.project.module_search import Finder
 
 __all__ = ["rewrite_statements"]
 

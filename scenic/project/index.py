@@ -20,8 +20,8 @@ from scenic.compiler.semantics.modules import Exported, Exports, FoundModule, Mo
 from scenic.dataclass import dataclass
 from scenic.language.errors import ScenicError
 from scenic.language.source import Source, read_source
+from scenic.project.module_search import Finder
 from scenic.project.modules import read_module
-from scenic.project.search import Finder
 
 __all__ = ["Project"]
 

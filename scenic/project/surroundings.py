@@ -11,8 +11,8 @@ from scenic.language.diagnostics import Diagnostic
 from scenic.project.appearances import appearance_findings
 from scenic.project.imports import Imports
 from scenic.project.index import Project
-from scenic.project.maps import map_findings
-from scenic.project.textures import texture_findings
+from scenic.project.map_checks import map_findings
+from scenic.project.texture_checks import texture_findings
 
 __all__ = ["surroundings_in"]
 

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from scenic.formats.instances import Gallery
 from scenic.formats.labels import observe
 from scenic.formats.lamps import light_colors
-from scenic.formats.sensors import sensor_viewpoint
+from scenic.formats.mesh_instances import Gallery
+from scenic.formats.scene_cameras import sensor_viewpoint
 from scenic.runtime.elements.sensors import CameraSensor, Sensor
 
 __all__ = ["Cameras", "Present", "carried"]

@@ -42,7 +42,7 @@ from scenic.simulators.results import (
     TerminationType,
     kept,
 )
-from scenic.simulators.watching import Watch, patience
+from scenic.simulators.step_watchdog import Watch, patience
 
 __all__ = ["OnState", "Poses", "Simulation"]
 

@@ -3,7 +3,7 @@
 from typing import Final
 
 from scenic.dataclass import dataclass
-from scenic.statistics.intervals import Interval, exact_interval
+from scenic.statistics.confidence_intervals import Interval, exact_interval
 
 __all__ = ["PairedComparison"]
 

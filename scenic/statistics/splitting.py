@@ -22,7 +22,7 @@ from typing import Final, Generic, TypeVar
 import numpy as np
 
 from scenic.dataclass import dataclass
-from scenic.statistics.intervals import Interval
+from scenic.statistics.confidence_intervals import Interval
 
 __all__ = ["Move", "Repetition", "Splitting", "SplittingRun", "repeated_interval", "repeated_probability"]
 

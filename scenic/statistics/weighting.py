@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenic.dataclass import dataclass
-from scenic.statistics.intervals import Interval
+from scenic.statistics.confidence_intervals import Interval
 
 __all__ = ["LEAST_EFFECTIVE", "Proposal", "effective_size", "weighted_interval"]
 

@@ -25,7 +25,7 @@ from scenic.project.index import Project
 from scenic.project.surroundings import surroundings_in
 
 if TYPE_CHECKING:
-    from scenic.runtime.sampling.report import Exhausted
+    from scenic.runtime.sampling.rejection_report import Exhausted
     from scenic.runtime.scenes.scenario import Scenario
     from scenic.runtime.scenes.scene import Scene
 
@@ -227,7 +227,7 @@ def _map(loaded: "Scenario") -> dict[str, Any] | None:
 
 def _sample(loaded: "Scenario", trial: Trial, made: _Answer) -> None:
     from scenic.formats.json_lines import scene_document
-    from scenic.runtime.sampling.report import Exhausted
+    from scenic.runtime.sampling.rejection_report import Exhausted
 
     limits = trial.limits
     results = loaded.stream(

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import scenic
-from scenic.analysis.report import prove
+from scenic.analysis.fact_diagnostics import prove
 from scenic.narrowing import conditions
 from tests.recorded import FOLDER, hold, said, shown
 

@@ -9,11 +9,11 @@ from graph.programs import Triple, constant, make, one_of, source, uniform
 from scipy.optimize import linprog
 
 from analysis.random_programs import accepted, conditions
-from scenic.analysis import terms as terms_module
+from scenic.analysis import solver_terms as terms_module
 from scenic.analysis.contraction import contract
 from scenic.analysis.facts import Fact
 from scenic.analysis.smt import judge
-from scenic.analysis.terms import Answer, Questions, SolverTerms
+from scenic.analysis.solver_terms import Answer, Questions, SolverTerms
 from scenic.graph import construction
 from scenic.graph import node as graph
 from scenic.graph.kinds import Kind

@@ -9,10 +9,10 @@ import z3
 from graph.programs import CASES, B, I, P, Q, S, U, V
 from graph.readings import has, kind_of, values_of
 
-from scenic.analysis.terms import SolverTerms
+from scenic.analysis.solver_terms import SolverTerms
 from scenic.graph.kinds import Kind
 from scenic.graph.operations import TABLE
-from scenic.graph.operations.encoding import componentwise
+from scenic.graph.operations.solver_readings import componentwise
 from tests.each import each
 
 VALUES = {

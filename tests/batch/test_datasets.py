@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 import scenic
-from scenic.batch import encoding
+from scenic.batch import scene_bytes
 from scenic.batch.datasets import DatasetRun, make_dataset, write_table
 from scenic.batch.engines import OverExecutor, Processes
 from scenic.batch.manifest import NAME, DatasetError, Manifest
@@ -148,7 +148,7 @@ def test_a_journal_saves_looking_again(
         if seen > 10:
             raise Ended
 
-    monkeypatch.setattr(encoding, "LONGEST", 4)
+    monkeypatch.setattr(scene_bytes, "LONGEST", 4)
     with pytest.raises(Ended):
         make_dataset(scenario, tmp_path / "ended", wanted, DatasetRun(advance=advance))
     names = sorted(path.name for path in (tmp_path / "ended").iterdir())

@@ -21,7 +21,7 @@ from scenic.batch.engines import OverExecutor, Processes
 from scenic.batch.manifest import NAME, DatasetError, Manifest
 from scenic.batch.verifying import merge, verify
 from scenic.formats.coco import run_lengths
-from scenic.formats.sensors import CameraError
+from scenic.formats.scene_cameras import CameraError
 
 PROGRAM = """
 from scenic import RGBSensor, SSSensor

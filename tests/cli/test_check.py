@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from scenic.cli.watching import watch
+from scenic.cli.file_changes import watch
 from tests.cli.commands import run_here
 from tests.processes import interruptible
 
@@ -375,7 +375,7 @@ def test_watching_checks_again_when_something_changes(
             raise KeyboardInterrupt
 
     runs: list[int] = []
-    monkeypatch.setattr("scenic.cli.watching.time.sleep", wait)
+    monkeypatch.setattr("scenic.cli.file_changes.time.sleep", wait)
     with pytest.raises(KeyboardInterrupt):
         watch([str(program)], lambda: runs.append(looks))
     assert runs == [0, 1]

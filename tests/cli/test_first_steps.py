@@ -9,7 +9,7 @@ import scenic
 from scenic.cli.main import scenic as command_line
 from scenic.installation import State, findings
 from scenic.language.extras import EXTRAS, installation
-from scenic.simulators.batch import choose_simulator, simulate_number
+from scenic.simulators.numbered_simulations import choose_simulator, simulate_number
 from scenic.templates import TEMPLATES, copy
 from tests.cli.commands import run_here
 

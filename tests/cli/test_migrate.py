@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from scenic.migration import files as migrated_files
+from scenic.migration import migrated_files as migrated_files
 from tests.cli.commands import run_here
 
 OLD = "ego = Object at 1 @ 2  # here\nObject offset by 3 @ 4\n"

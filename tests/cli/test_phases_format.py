@@ -7,7 +7,7 @@ import pytest
 from scenic.cli.render.phases_format import PASSES
 from scenic.language.errors import ParseCompileError
 from scenic.pipeline import scenarioFromString
-from scenic.runtime.sampling.report import Exhausted
+from scenic.runtime.sampling.rejection_report import Exhausted
 from scenic.simulators.dummy import DummySimulator
 from tests.cli.commands import run_here
 

@@ -20,7 +20,7 @@ from scenic.cli.sinks import OutputChoiceError
 from scenic.formats.files import OutputError
 from scenic.language.errors import Located
 from scenic.language.spans import Span
-from scenic.runtime.sampling.report import Exhausted, RejectionReport, RejectionRow
+from scenic.runtime.sampling.rejection_report import Exhausted, RejectionReport, RejectionRow
 from tests.formats.stand_ins import Object, Scene
 
 ROWS = (

@@ -5,7 +5,7 @@ import io
 from rich.console import Console
 
 import scenic
-from scenic.cli.render.scenes import render_scene
+from scenic.cli.render.scene_listing import render_scene
 
 
 def test_a_scene_is_a_table_of_its_objects() -> None:

@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from scenic.configuration.project import PLAIN, Configuration, Configurations, read_configuration
+from scenic.language.code_selection import Rules
 from scenic.language.diagnostics import Severity
-from scenic.language.selection import Rules
 
 
 def configuration(folder: Path, text: str) -> Configuration:

@@ -17,9 +17,9 @@ from scenic.cli.grammar import grammar
 from scenic.compiler.generated import HARD_KEYWORDS
 from scenic.compiler.parser import parse
 from scenic.constrained import FORMATS, grammar_text
+from scenic.constrained.grammar_rules import read_rules
 from scenic.constrained.items import TextChoice, TextMany, TextOptional, TextRow, Use, Variant
 from scenic.constrained.layout import lay_out
-from scenic.constrained.rules import read_rules
 from scenic.constrained.terminals import letters
 
 ROOT = Path(__file__).parents[2]

@@ -14,9 +14,9 @@ from scenic.formats.camera import Outlook
 from scenic.formats.course_page import PoseTape, course_data, course_page
 from scenic.formats.course_pictures import StatePictures
 from scenic.formats.html import Page
-from scenic.formats.instances import picture
 from scenic.formats.lamps import COLORS, light_colors
-from scenic.formats.scenes import Scene
+from scenic.formats.mesh_instances import picture
+from scenic.formats.scene_protocols import Scene
 from scenic.simulators.cameras import Present
 from scenic.simulators.newtonian.simulator import NewtonianSimulator
 from tests.maps import cross

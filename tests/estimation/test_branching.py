@@ -15,7 +15,7 @@ from scenic.estimation.requirements import EstimateError
 from scenic.estimation.sentences import notes
 from scenic.falsification.lineages import Ancestry, Descent, Lineage, LineageStep
 from scenic.falsification.replaying import kept_run, replay
-from scenic.falsification.store import read_rows
+from scenic.falsification.search_folder import read_rows
 from scenic.runtime.dynamics.draws import Draw, Seeded
 from tests.estimation.test_estimating import BRAKE, rows_of
 

@@ -14,8 +14,8 @@ from scenic.estimation.requirements import EstimateError
 from scenic.falsification.evaluating import SearchError
 from scenic.falsification.objectives import ObjectiveError
 from scenic.falsification.replaying import kept_run, replay
-from scenic.falsification.store import EstimateFolderError, read_rows
-from scenic.statistics.intervals import exact_interval
+from scenic.falsification.search_folder import EstimateFolderError, read_rows
+from scenic.statistics.confidence_intervals import exact_interval
 from tests.amounts import amount
 from tests.cli.commands import run_here
 

@@ -9,7 +9,7 @@ from scenic.core.vectors import Vector
 
 import scenic
 from scenic.estimation.estimate import Asked, Estimate, Tally, requirement_tallies
-from scenic.estimation.report import estimate_page
+from scenic.estimation.estimate_page import estimate_page
 from scenic.estimation.sentences import comparison_words, headline, notes
 from scenic.simulators.kinematic import KinematicSimulation, KinematicSimulator
 from tests.estimation.test_estimating import BRAKE, braking

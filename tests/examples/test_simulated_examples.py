@@ -12,7 +12,7 @@ from examples.recheck import JUDGES, disagreements
 from examples.recheck import main as recheck
 from scenic.formats.trajectory_reading import read_trajectory
 from scenic.pipeline import load
-from scenic.simulators.batch import choose_simulator, simulate_number
+from scenic.simulators.numbered_simulations import choose_simulator, simulate_number
 from tests.cli.commands import run_here
 
 KINEMATIC = ("drones", "intersection", "overtaking")

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 import scenic
-from scenic.simulators.batch import choose_simulator, simulate_number
+from scenic.simulators.numbered_simulations import choose_simulator, simulate_number
 
 ROOT = Path(__file__).parents[2]
 PROGRAMS = sorted((ROOT / "examples" / "scenarios").glob("*.scenic"))

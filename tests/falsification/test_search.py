@@ -11,10 +11,10 @@ from click.testing import CliRunner, Result
 import scenic
 from scenic.cli.falsify import falsify as command
 from scenic.falsification.objectives import Objective, ObjectiveError
-from scenic.falsification.report import importances, load_result, load_results, report_page
 from scenic.falsification.sampling import sampled_by
 from scenic.falsification.search import FalsificationResult, SearchError
-from scenic.falsification.store import SearchFolderError, read_rows
+from scenic.falsification.search_folder import SearchFolderError, read_rows
+from scenic.falsification.search_page import importances, load_result, load_results, report_page
 from scenic.formats.files import OutputError
 from scenic.language.errors import InvalidScenarioError
 from scenic.runtime.scenes.scene import Scene

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import scenic
-from scenic.formats.commonroad.files import CommonRoadFile, commonroad_about
+from scenic.formats.commonroad.scenario_files import CommonRoadFile, commonroad_about
 from scenic.language.errors import UnsupportedError
 from scenic.simulators.newtonian import NewtonianSimulator
 from tests.cli.commands import run_here
@@ -116,7 +116,7 @@ def test_networks_are_read_back(town: Path, tmp_path: Path) -> None:
     from commonroad.scenario.traffic_sign import SupportedTrafficSignCountry
     from commonroad.scenario.traffic_sign_interpreter import TrafficSignInterpreter
 
-    from scenic.formats.commonroad.files import write_scene
+    from scenic.formats.commonroad.scenario_files import write_scene
 
     scene = scene_of(town, "ego = new Car at (50, 1.75), facing 90 deg\n")
     network = scene.workspace.network
@@ -175,7 +175,7 @@ def test_networks_are_read_back(town: Path, tmp_path: Path) -> None:
 
 
 def test_refusals_say_why(tmp_path: Path) -> None:
-    from scenic.formats.commonroad.files import write_scene
+    from scenic.formats.commonroad.scenario_files import write_scene
 
     [scene] = scenic.scenarioFromString("ego = new Object\n").sample(1, seed=0)
     with pytest.raises(UnsupportedError, match="road network"):

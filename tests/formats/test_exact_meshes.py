@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from scenic.formats.glb import _Buffers, glb
-from scenic.formats.instances import Gallery, Surface, picture, surface_of
+from scenic.formats.mesh_instances import Gallery, Surface, picture, surface_of
 from scenic.formats.obj import obj
 from tests.formats.stand_ins import BALL, Chair, Mesh, Object, Scene, Shape, Source, Turn
 

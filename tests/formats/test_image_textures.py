@@ -13,9 +13,9 @@ from scenic.batch.manifest import Manifest
 from scenic.batch.source_files import check_textures
 from scenic.formats.coco import Photographer
 from scenic.formats.image_textures import ImageTexture, TextureError
-from scenic.formats.instances import picture
 from scenic.formats.mesh_coordinates import coordinates_of
 from scenic.formats.mesh_files import digest_of
+from scenic.formats.mesh_instances import picture
 from scenic.formats.render import render
 from scenic.formats.textures import texture_of
 

@@ -11,7 +11,7 @@ import pytest
 import scenic
 from scenic.formats.coco import LabelledImages, millimetres, run_lengths
 from scenic.formats.labels import body_of, observe
-from scenic.formats.sensors import CameraError, viewpoint
+from scenic.formats.scene_cameras import CameraError, viewpoint
 from scenic.runtime.elements.sensors import DepthSensor, RGBSensor, SSSensor
 from tests.amounts import amount
 from tests.formats.stand_ins import BALL, Chair, Object, Scene, Turn

@@ -11,7 +11,7 @@ import pytest
 
 from scenic.formats.coco import LabelledImages, millimetres
 from scenic.formats.labels import Observation, document, observe
-from scenic.formats.sensors import viewpoint
+from scenic.formats.scene_cameras import viewpoint
 from scenic.runtime.elements.sensors import DEFAULT_FIELD_OF_VIEW, RGBSensor
 from tests.formats.stand_ins import Object, Scene, Turn
 

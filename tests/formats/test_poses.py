@@ -9,7 +9,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from scenic.formats import colors
-from scenic.formats.instances import distinct_labels
+from scenic.formats.mesh_instances import distinct_labels
 from scenic.formats.poses import euler_angles, quaternion_of, rotation_matrix
 
 

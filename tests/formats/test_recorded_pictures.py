@@ -13,8 +13,8 @@ from scenic.formats import regions as drawing
 from scenic.formats.backdrop import _grid_spacing, ground_color, sky_color
 from scenic.formats.buffers import Lens, look
 from scenic.formats.camera import Outlook, corners, framed, framing, ground_height
-from scenic.formats.instances import picture
 from scenic.formats.lighting import coarse_light, fine_light, own_light
+from scenic.formats.mesh_instances import picture
 from scenic.formats.poses import euler_angles, quaternion_of, rotation_matrix
 from scenic.formats.render import paint
 from scenic.formats.stage import Stage, ground_light

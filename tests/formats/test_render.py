@@ -10,7 +10,7 @@ import scenic
 from scenic.formats.buffers import Lens, seen
 from scenic.formats.camera import STANDARD, corners, framed, framing, ground_height
 from scenic.formats.imaging import MissingLibraryError
-from scenic.formats.instances import picture
+from scenic.formats.mesh_instances import picture
 from scenic.formats.png import png
 from scenic.formats.render import paint, render
 from scenic.formats.stage import Stage

@@ -11,7 +11,7 @@ import scenic
 from scenic.formats.appearance_names import NAMES
 from scenic.formats.glb import glb
 from scenic.formats.html import Page
-from scenic.formats.instances import Gallery, picture, resting
+from scenic.formats.mesh_instances import Gallery, picture, resting
 from scenic.formats.obj import obj
 from scenic.formats.painted_solids import Modeller
 from scenic.formats.render import render

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import scenic
-from scenic.formats.instances import picture
+from scenic.formats.mesh_instances import picture
 from scenic.formats.render import render
 from scenic.formats.scenery import USUAL, SceneryError, scenery_of
 from scenic.formats.textures import PATTERNS, TextureError, texture_of

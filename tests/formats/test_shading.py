@@ -10,8 +10,8 @@ from scenic.formats.backdrop import _lines, sky_color
 from scenic.formats.buffers import Lens, look
 from scenic.formats.camera import Camera
 from scenic.formats.colors import decoded, encoded, linear
-from scenic.formats.instances import picture
 from scenic.formats.lighting import _averaged, own_light
+from scenic.formats.mesh_instances import picture
 from scenic.formats.render import paint
 from scenic.formats.stage import SKY, Stage
 from tests.formats.stand_ins import BALL, Mesh, Object, Scene, Shape, Source, Turn, unit

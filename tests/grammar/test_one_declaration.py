@@ -326,7 +326,7 @@ Leave it out.
         ),
     },
     "simulator": {
-        "scenic/simulators/batch.py": (
+        "scenic/simulators/numbered_simulations.py": (
             (
                 '        "dummy": "scenic',
                 """        "still": "scenic.simulators.still:StillSimulator",
@@ -454,7 +454,7 @@ for rule, word in (("prefix_operation", "gap"), ("specifier", "beside"), ("soft_
 
 import importlib
 import scenic
-from scenic.analysis.report import _NOUNS
+from scenic.analysis.fact_diagnostics import _NOUNS
 from scenic.ide.completion import completions
 from scenic.project.index import Project
 from scenic.runtime.shapes.shapes import primitive_of
@@ -463,7 +463,7 @@ from scenic.runtime.values.source_text import spelled
 
 from lsprotocol import types
 from scenic.lsp.server import Server
-from scenic.simulators.batch import choose_simulator
+from scenic.simulators.numbered_simulations import choose_simulator
 
 scenario = scenic.scenarioFromString(
     "from scenic import Thermometer\n"

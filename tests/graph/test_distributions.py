@@ -18,7 +18,7 @@ from scenic.graph.bounds import Bounds
 from scenic.graph.kinds import Kind
 from scenic.graph.node import Graph
 from scenic.graph.operations.distributions import Table
-from scenic.graph.operations.normal import conditioned_cumulative, conditioned_quantile
+from scenic.graph.operations.normal_law import conditioned_cumulative, conditioned_quantile
 from tests.each import each
 
 ALARM = 1e-4

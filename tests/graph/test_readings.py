@@ -20,7 +20,7 @@ from graph.programs import (
     source,
 )
 from scenic.analysis.smt import Encoding
-from scenic.analysis.terms import Answer, Questions, SolverTerms
+from scenic.analysis.solver_terms import Answer, Questions, SolverTerms
 from scenic.graph import bounding
 from scenic.graph.bounds import Bounds
 from scenic.graph.construction import make_node

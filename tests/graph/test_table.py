@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from graph.programs import CASES, I, Q, S, V, case_node, draw, evaluate, is_fine, kind_of, source
-from scenic.analysis.terms import SolverTerms
+from scenic.analysis.solver_terms import SolverTerms
 from scenic.graph.bounds import Bounds
 from scenic.graph.operations import TABLE
 from tests.each import each

@@ -8,7 +8,7 @@ from scenic.ide.hover import hover
 from scenic.ide.importing import missing_imports
 from scenic.ide.navigation import Target, definitions
 from scenic.ide.snapshot import Snapshot
-from scenic.language.selection import Rules
+from scenic.language.code_selection import Rules
 from scenic.language.source import read_source
 from scenic.project.index import Project
 

@@ -3,7 +3,7 @@ import pytest
 from scenic.compiler import check as checker
 from scenic.ide import diagnostics as module
 from scenic.ide.diagnostics import diagnostics
-from scenic.language.selection import Rules
+from scenic.language.code_selection import Rules
 
 
 def test_the_same_as_the_command_shows() -> None:

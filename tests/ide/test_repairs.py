@@ -5,8 +5,8 @@ import pytest
 from scenic.compiler.fixes import apply_fixes, repair
 from scenic.ide.diagnostics import diagnostics
 from scenic.ide.repairs import repair_all, repairs
+from scenic.language.code_selection import Rules
 from scenic.language.diagnostics import Fix
-from scenic.language.selection import Rules
 from scenic.language.spans import Span
 
 TEXT = "import os\nego = new Object with wdth 3\nx = 1 if ego else 2\nnew Object with widht 2\n"

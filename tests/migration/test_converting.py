@@ -9,7 +9,7 @@ from scenic.compiler.generated import WORDS
 from scenic.compiler.lexer import lex
 from scenic.language.diagnostics import Severity
 from scenic.migration.converting import Converter
-from scenic.migration.rules import RULES
+from scenic.migration.migration_rules import RULES
 from scenic.pipeline import scenarioFromFile
 from scenic.project.index import Project
 from scenic.project.surroundings import surroundings_in

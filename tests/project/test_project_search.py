@@ -3,7 +3,7 @@ from pathlib import Path
 import pytest
 
 from scenic.compiler.semantics.modules import ModuleKind
-from scenic.project.search import Finder
+from scenic.project.module_search import Finder
 from tests.project.layouts import write
 
 

@@ -19,9 +19,9 @@ from scenic.language.errors import (
     ScenicWarning,
     SimulationCreationError,
 )
-from scenic.simulators.batch import simulate_number
 from scenic.simulators.kinematic import KinematicSimulator
 from scenic.simulators.newtonian.simulator import NewtonianSimulator
+from scenic.simulators.numbered_simulations import simulate_number
 from scenic.simulators.simulator import Simulator
 from tests.cli.commands import run_here
 from tests.maps import RoadText, lane, lanes, line, map_text, straight

@@ -7,7 +7,7 @@ import pytest
 
 import scenic
 from scenic.formats.labels import observe
-from scenic.formats.sensors import sensor_viewpoint
+from scenic.formats.scene_cameras import sensor_viewpoint
 from scenic.simulators.cameras import Cameras
 from scenic.simulators.kinematic import KinematicSimulation, KinematicSimulator
 from scenic.simulators.simulation import Simulation

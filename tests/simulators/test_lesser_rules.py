@@ -32,14 +32,14 @@ from scenic.runtime.dynamics.requirements import RequirementOutcome
 from scenic.runtime.temporal.monitors import Verdict
 from scenic.runtime.values.values import Vector
 from scenic.simulators.actions import Action
-from scenic.simulators.batch import SimulatorChoiceError, choose_simulator, simulate_number
 from scenic.simulators.dummy import DummySimulator
 from scenic.simulators.kinematic import KinematicSimulator
+from scenic.simulators.numbered_simulations import SimulatorChoiceError, choose_simulator, simulate_number
 from scenic.simulators.replays import Replay, Tape
 from scenic.simulators.results import Latest, NotKeptError
 from scenic.simulators.simulation import Simulation
 from scenic.simulators.simulator import Simulator
-from scenic.simulators.watching import Watch
+from scenic.simulators.step_watchdog import Watch
 
 from .test_interface import AGENTS, DRAWING, REJECTED, Plain, scene, simulator
 

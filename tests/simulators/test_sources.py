@@ -11,8 +11,8 @@ from scipy.stats import kstest, qmc
 import scenic
 from scenic.language.errors import ScenicWarning
 from scenic.runtime.dynamics.draws import Draw
-from scenic.simulators.batch import simulate_number
 from scenic.simulators.dummy import DummySimulator
+from scenic.simulators.numbered_simulations import simulate_number
 
 FALSE_ALARM = 1e-6
 SQUARE = "ego = new Object at (Range(0, 1), Range(0, 1))\n"

@@ -7,7 +7,7 @@ import sys
 import pytest
 
 from scenic.trying.answer import Limits, Trial
-from scenic.trying.workers import tried
+from scenic.trying.trial_processes import tried
 
 PROGRAMS = (
     "import os\nos._exit(3)\n",

@@ -8,9 +8,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from scenic.analysis.finite.constraint_network import Constraint, FiniteProblem
 from scenic.analysis.finite.decomposing import Decomposer
 from scenic.analysis.finite.mixed import Possible
-from scenic.analysis.finite.network import Constraint, FiniteProblem
 from scenic.analysis.finite.solving import Component, Drawn, solve
 from scenic.analysis.finite.tables import Table, Tabulator, seeds_of_calls
 from scenic.analysis.finite.variables import Variable, variables_of

@@ -8,9 +8,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from scenic.analysis.finite.constraint_network import FiniteProblem, merged
 from scenic.analysis.finite.deciding import Decision
 from scenic.analysis.finite.elimination import eliminate, ordered
-from scenic.analysis.finite.network import FiniteProblem, merged
 from scenic.analysis.finite.solving import Component, solve
 from scenic.analysis.finite.tables import Mask
 from scenic.dataclass import dataclass

@@ -15,9 +15,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from scenic.analysis.finite.constraint_network import Constraint, Reduced
 from scenic.analysis.finite.differing import labelled
 from scenic.analysis.finite.listing import solutions
-from scenic.analysis.finite.network import Constraint, Reduced
 from scenic.analysis.finite.tables import Table
 from scenic.dataclass import dataclass
 from scenic.graph.draws import Floats

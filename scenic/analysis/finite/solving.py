@@ -11,11 +11,18 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from scenic.analysis.finite.constraint_network import (
+    Constraint,
+    FiniteProblem,
+    Reduced,
+    components,
+    consistent,
+    merged,
+)
 from scenic.analysis.finite.differing import bounded
 from scenic.analysis.finite.elimination import eliminate, ordered
 from scenic.analysis.finite.listing import solutions
 from scenic.analysis.finite.matching import matchable
-from scenic.analysis.finite.network import Constraint, FiniteProblem, Reduced, components, consistent, merged
 from scenic.analysis.finite.occupying import Exclusive, exclusives, occupied
 from scenic.analysis.finite.tables import Mask
 from scenic.dataclass import dataclass

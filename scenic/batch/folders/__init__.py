@@ -1,1 +1,1 @@
-"""Folders that commands write over time: who writes (`lock`), what they hold (`folder`, `ranges`), what decides it (`fingerprint`)."""
+"""Folders that commands write over time: who writes (`lock`), what they hold (`folder`, `ranges`), what decides it (`file_digests`)."""

@@ -9,8 +9,8 @@ from scenic.falsification.samplers.bayesian import Bayesian
 from scenic.falsification.samplers.buckets import Bandit, CrossEntropy, EpsilonGreedy
 from scenic.falsification.samplers.evolution import Evolution
 from scenic.falsification.samplers.parzen import Parzen
-from scenic.falsification.samplers.protocol import Sampler, SamplerError
-from scenic.falsification.samplers.sequences import Grid, Halton, Random, Sobol
+from scenic.falsification.samplers.sampler import Sampler, SamplerError
+from scenic.falsification.samplers.space_filling import Grid, Halton, Random, Sobol
 from scenic.falsification.space import Space
 from scenic.language.spelling import nearest_option
 

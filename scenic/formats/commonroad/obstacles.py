@@ -9,7 +9,7 @@ import numpy as np
 
 from scenic.dataclass import dataclass
 from scenic.formats.commonroad.elements import Numbers, add, add_exact, add_point, decimal
-from scenic.formats.scenes import SceneObject
+from scenic.formats.scene_protocols import SceneObject
 
 __all__ = ["ObstacleCourse", "State", "add_obstacle", "add_problem", "state_of"]
 

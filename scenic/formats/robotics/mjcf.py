@@ -12,9 +12,9 @@ import numpy as np
 
 from scenic.formats.robotics.asset_files import FOLDER, hull, image_file, mesh_file, mesh_name, obj_text
 from scenic.formats.robotics.solids import Solid, solids_of
+from scenic.formats.scene_cameras import Viewpoint
+from scenic.formats.scene_protocols import Scene
 from scenic.formats.scenery import scenery_of
-from scenic.formats.scenes import Scene
-from scenic.formats.sensors import Viewpoint
 from scenic.runtime.geometry.meshes.convex_parts import convex_parts
 
 __all__ = ["mjcf"]

@@ -8,7 +8,7 @@ from scenic.formats.files import make_folder, write
 from scenic.formats.robotics.mjcf import mjcf
 from scenic.formats.robotics.sdf import sdf
 from scenic.formats.robotics.usd import require_usd, usd, usd_file
-from scenic.formats.scenes import Scene
+from scenic.formats.scene_protocols import Scene
 
 __all__ = ["ENDINGS", "FORMS", "check_form", "scene_files", "write_scene"]
 

@@ -14,10 +14,10 @@ import numpy as np
 import numpy.typing as npt
 
 from scenic.dataclass import dataclass
-from scenic.formats.instances import PALETTE
+from scenic.formats.mesh_instances import PALETTE
 from scenic.formats.poses import Four, Triple, quaternion_of
-from scenic.formats.scenes import Scene, SceneObject
-from scenic.formats.sensors import Viewpoint, sensor_viewpoint
+from scenic.formats.scene_cameras import Viewpoint, sensor_viewpoint
+from scenic.formats.scene_protocols import Scene, SceneObject
 from scenic.formats.textures import ImageTexture, placed_errors, texture_of
 from scenic.language.errors import Located
 from scenic.runtime.elements.sensors import CameraSensor

@@ -11,14 +11,14 @@ import numpy as np
 
 from scenic.formats.colors import linear
 from scenic.formats.imaging import MissingLibraryError
-from scenic.formats.instances import surface_of
+from scenic.formats.mesh_instances import surface_of
 from scenic.formats.poses import Four
 from scenic.formats.robotics.asset_files import FOLDER, image_file, mesh_name, texture_coordinates
 from scenic.formats.robotics.mjcf import bottom, in_frame
 from scenic.formats.robotics.solids import Solid, identifiers, solids_of
+from scenic.formats.scene_cameras import Viewpoint
+from scenic.formats.scene_protocols import Scene
 from scenic.formats.scenery import scenery_of
-from scenic.formats.scenes import Scene
-from scenic.formats.sensors import Viewpoint
 from scenic.language.extras import installation
 
 __all__ = ["require_usd", "usd", "usd_file"]

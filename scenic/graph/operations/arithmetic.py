@@ -11,8 +11,7 @@ from scenic.graph.bounds import Bounds
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.node import Node
 from scenic.graph.operation import BoundsReading, Call, KindRule, Operation
-from scenic.graph.operations.encoding import componentwise
-from scenic.graph.operations.narrowing import before_rounding, collapsed
+from scenic.graph.operations.inverse_readings import before_rounding, collapsed
 from scenic.graph.operations.numbers import (
     are_exact,
     arithmetic_kind,
@@ -21,7 +20,8 @@ from scenic.graph.operations.numbers import (
     lane_by_lane,
     where_defined,
 )
-from scenic.graph.operations.possibilities import may_divide_by_zero
+from scenic.graph.operations.possible_faults import may_divide_by_zero
+from scenic.graph.operations.solver_readings import componentwise
 
 
 def _kind(reading: BoundsReading, *vectors: tuple[bool, ...]) -> KindRule:

@@ -19,9 +19,9 @@ from scenic.graph.operation import (
     Terms,
     always,
 )
-from scenic.graph.operations.encoding import conjunction
-from scenic.graph.operations.narrowing import Mask, certain, truth, where
+from scenic.graph.operations.inverse_readings import Mask, certain, truth, where
 from scenic.graph.operations.numbers import are_exact, lane_by_lane
+from scenic.graph.operations.solver_readings import conjunction
 
 
 def _truth_of(function: Callable[[Any, Any], Any]) -> Callable[[Any, Any], bool]:

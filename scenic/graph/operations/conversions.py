@@ -10,7 +10,7 @@ from scenic.graph.bounds import Bounds
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.node import Node
 from scenic.graph.operation import Call, Operation, Terms, always, by_lane
-from scenic.graph.operations.narrowing import before_rounding, certain, truth, where
+from scenic.graph.operations.inverse_readings import before_rounding, certain, truth, where
 
 
 def _len(_call: Call, value: Column) -> Column:

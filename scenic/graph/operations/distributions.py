@@ -18,12 +18,12 @@ from scenic.graph.kinds import Column, Kind
 from scenic.graph.node import Node
 from scenic.graph.operation import Call, Operation, Terms, always
 from scenic.graph.operations.choosing import can_give, choose, hull_of_possible, joined_kind
-from scenic.graph.operations.encoding import chain, disjunction
-from scenic.graph.operations.narrowing import Mask, before_rounding, where
-from scenic.graph.operations.normal import conditioned_cumulative, conditioned_quantile
+from scenic.graph.operations.inverse_readings import Mask, before_rounding, where
 from scenic.graph.operations.normal_functions import ndtr, ndtri
+from scenic.graph.operations.normal_law import conditioned_cumulative, conditioned_quantile
 from scenic.graph.operations.numbers import EXACT
-from scenic.graph.operations.possibilities import is_finite
+from scenic.graph.operations.possible_faults import is_finite
+from scenic.graph.operations.solver_readings import chain, disjunction
 
 FIRST: Final = 5e-324
 LAST: Final = 1 - 2.0**-53

@@ -12,9 +12,9 @@ from scenic.graph.bounds import Bounds
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.node import Node
 from scenic.graph.operation import Call, Operation, Terms, always
-from scenic.graph.operations.encoding import root_of_squares, within
-from scenic.graph.operations.narrowing import sides
-from scenic.graph.operations.possibilities import may_be_infinite
+from scenic.graph.operations.inverse_readings import sides
+from scenic.graph.operations.possible_faults import may_be_infinite
+from scenic.graph.operations.solver_readings import root_of_squares, within
 from scenic.graph.quaternions import normal_angle, normalize_angle
 
 

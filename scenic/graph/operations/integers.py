@@ -12,8 +12,7 @@ from scenic.graph.bounds import Bounds
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.node import Node
 from scenic.graph.operation import Call, Operation, Terms, always, by_lane
-from scenic.graph.operations.encoding import componentwise
-from scenic.graph.operations.narrowing import before_rounding
+from scenic.graph.operations.inverse_readings import before_rounding
 from scenic.graph.operations.numbers import (
     arithmetic_kind,
     as_integers,
@@ -21,7 +20,8 @@ from scenic.graph.operations.numbers import (
     lane_by_lane,
     where_defined,
 )
-from scenic.graph.operations.possibilities import may_divide_by_zero
+from scenic.graph.operations.possible_faults import may_divide_by_zero
+from scenic.graph.operations.solver_readings import componentwise
 
 
 def _floor_divide(call: Call, a: Column, b: Column) -> Column:

@@ -13,8 +13,8 @@ from scenic.graph.bounds import Bounds
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import OK, Call, Operation, Terms, always
 from scenic.graph.operations.choosing import can_give, choose, hull_of_possible, joined_kind
-from scenic.graph.operations.encoding import chain, conjunction, disjunction
-from scenic.graph.operations.narrowing import certain, truth, where
+from scenic.graph.operations.inverse_readings import certain, truth, where
+from scenic.graph.operations.solver_readings import chain, conjunction, disjunction
 
 
 def _all(*operands: bool) -> bool:

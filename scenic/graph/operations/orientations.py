@@ -13,13 +13,13 @@ from scenic.graph.kinds import Column, Kind
 from scenic.graph.node import Node, constant
 from scenic.graph.operation import Call, Operation, Terms, always
 from scenic.graph.operations.arithmetic import ADD, NEGATIVE
-from scenic.graph.operations.encoding import within
 from scenic.graph.operations.functions import (
     NORMALIZE_ANGLE,
     cos_bounds,
     length_bounds,
     sin_bounds,
 )
+from scenic.graph.operations.solver_readings import within
 
 
 def _from_euler(_call: Call, yaw: Column, pitch: Column, roll: Column) -> Column:

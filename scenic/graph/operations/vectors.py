@@ -11,9 +11,9 @@ from scenic.graph.bounds import Bounds
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.node import Node
 from scenic.graph.operation import Call, Operation, Terms, always
-from scenic.graph.operations.encoding import root_of_squares, within
 from scenic.graph.operations.functions import length_bounds
-from scenic.graph.operations.narrowing import before_rounding, sides
+from scenic.graph.operations.inverse_readings import before_rounding, sides
+from scenic.graph.operations.solver_readings import root_of_squares, within
 from scenic.graph.quaternions import components_last, normal_angle, normalize_angle
 
 

@@ -12,9 +12,9 @@ from scenic.language.errors import InvalidScenarioError, ScenicTypeError
 from scenic.language.types import SCALAR
 from scenic.runtime.ground.context import current, here, uniform_draw
 from scenic.runtime.python.bounded import bounds_of_support
-from scenic.runtime.python.drawing import support_of
 from scenic.runtime.python.opaque import call_later, evaluated, later
 from scenic.runtime.python.random_state import preserved, seed_globals
+from scenic.runtime.python.single_samples import support_of
 from scenic.runtime.values.lazy import is_lazy
 from scenic.runtime.values.values import Random, is_random, wrong_type
 

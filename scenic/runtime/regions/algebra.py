@@ -26,8 +26,8 @@ from scenic.runtime.regions.choice import RegionChoice, as_region
 from scenic.runtime.regions.combinations import DifferenceRegion, IntersectionRegion, UnionRegion
 from scenic.runtime.regions.composite import Composite
 from scenic.runtime.regions.fields import PiecewiseVectorField, field_of_union
+from scenic.runtime.regions.fixed_intersections import MEETING, cells_near
 from scenic.runtime.regions.lines import LineRegion, PathRegion, PolylineRegion
-from scenic.runtime.regions.meeting import MEETING, cells_near
 from scenic.runtime.regions.meshes import (
     MeshSurfaceRegion,
     MeshVolumeRegion,

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scenic.dataclass import dataclass
 from scenic.graph import intervals
 from scenic.graph.bounds import Bounds, Floats
-from scenic.graph.operations.narrowing import truth, where
+from scenic.graph.operations.inverse_readings import truth, where
 from scenic.graph.operations.orientations import matrix, turned_by
 from scenic.language.errors import UnsupportedError
 from scenic.runtime.geometry.containment.body_containment import extreme_corners

@@ -11,7 +11,7 @@ import numpy as np
 
 from scenic.graph import intervals
 from scenic.graph.bounds import Bounds, Floats
-from scenic.graph.operations.narrowing import truth, where
+from scenic.graph.operations.inverse_readings import truth, where
 from scenic.graph.operations.orientations import turned
 
 SLACK: Final = 1e-6

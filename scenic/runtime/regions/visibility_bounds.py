@@ -11,7 +11,7 @@ import numpy as np
 
 from scenic.graph import intervals
 from scenic.graph.bounds import Bounds, Floats
-from scenic.graph.operations.narrowing import truth
+from scenic.graph.operations.inverse_readings import truth
 from scenic.graph.operations.orientations import turned
 from scenic.runtime.geometry.views.observers import FULL_ANGLE_SLACK
 from scenic.runtime.regions.nearness import SLACK, at_any_height, body_reach, near, only_within

@@ -17,7 +17,7 @@ import numpy as np
 from scenic.runtime.geometry.poses import Booleans, Floats
 from scenic.runtime.geometry.views.hits import place
 from scenic.runtime.geometry.views.observers import Views
-from scenic.runtime.geometry.views.obstacles import Obstacles, Occluder
+from scenic.runtime.geometry.views.occluders import Obstacles, Occluder
 from scenic.runtime.geometry.views.seen_bodies import box_distance
 from scenic.runtime.regions.stacked import body_of, body_operands, is_body
 from scenic.runtime.regions.visibility_nodes import view_operands, views_of

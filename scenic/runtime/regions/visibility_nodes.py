@@ -17,7 +17,7 @@ from scenic.language.errors import ScenicTypeError
 from scenic.language.types import OBJECT, POINT
 from scenic.runtime.geometry.contact.scalar_bodies import Placed, Triple, axes_of, is_near_way
 from scenic.runtime.geometry.views.observers import Views
-from scenic.runtime.geometry.views.obstacles import Occluder
+from scenic.runtime.geometry.views.occluders import Occluder
 from scenic.runtime.geometry.views.scalar_views import View, sees_body, sees_point
 from scenic.runtime.geometry.views.seen_bodies import sees_bodies
 from scenic.runtime.geometry.views.seen_points import sees_points

@@ -18,11 +18,11 @@ from scenic.graph.draws import Lanes, attempt_keys
 from scenic.graph.node import Node
 from scenic.runtime.geometry.ragged import expand
 from scenic.runtime.sampling.alike import Aliased, Group, GroupKind, kinds_of
-from scenic.runtime.sampling.blocks import Reads
 from scenic.runtime.sampling.checks import Check, CollisionCheck, Mask
+from scenic.runtime.sampling.draw_blocks import Reads
 from scenic.runtime.sampling.engine import Engine, Plan
+from scenic.runtime.sampling.group_collisions import Bodies
 from scenic.runtime.sampling.halving import Joint
-from scenic.runtime.sampling.meeting import Bodies
 from scenic.runtime.sampling.pending import Pending
 
 __all__ = ["Apart", "attempts_at_kind", "rehearsed", "separated"]

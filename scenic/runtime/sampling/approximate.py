@@ -26,11 +26,11 @@ from scenic.graph.draws import (
     seed_word,
 )
 from scenic.graph.node import Node
-from scenic.runtime.sampling.blocks import Reads, blocks, merged, pieces
 from scenic.runtime.sampling.checks import Check, CollisionCheck
+from scenic.runtime.sampling.draw_blocks import Reads, blocks, merged, pieces
 from scenic.runtime.sampling.engine import Accepted, CandidateError, Engine, FinishedLanes
 from scenic.runtime.sampling.pending import SceneTask
-from scenic.runtime.sampling.report import CORRELATED, Approximation, Exhausted
+from scenic.runtime.sampling.rejection_report import CORRELATED, Approximation, Exhausted
 
 __all__ = ["approximated"]
 

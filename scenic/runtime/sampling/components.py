@@ -16,12 +16,12 @@ from numpy.typing import NDArray
 from scenic.dataclass import dataclass
 from scenic.graph.bounding import over, overall
 from scenic.graph.bounds import Bounds
-from scenic.graph.forms import Forms
 from scenic.graph.node import Graph, Node
+from scenic.graph.node_forms import Forms
 from scenic.runtime.geometry.ragged import distinct
 from scenic.runtime.sampling.apart import Apart, separated
-from scenic.runtime.sampling.blocks import Reads
 from scenic.runtime.sampling.checks import Check, CollisionCheck, NodeCheck, ObjectNodes
+from scenic.runtime.sampling.draw_blocks import Reads
 from scenic.runtime.sampling.engine import Engine, Plan
 from scenic.runtime.sampling.halving import SELDOM, Divider, Tree, may_fault
 

@@ -26,7 +26,7 @@ from scenic.runtime.sampling.apart import Apart
 from scenic.runtime.sampling.engine import Engine
 from scenic.runtime.sampling.group_candidates import LEAVES, GroupCandidates
 from scenic.runtime.sampling.joining import Joined
-from scenic.runtime.sampling.report import Approximation
+from scenic.runtime.sampling.rejection_report import Approximation
 
 __all__ = ["is_loose", "settle"]
 

@@ -31,7 +31,7 @@ from scenic.runtime.sampling.checks import Check, CheckVerdict, Mask, joined
 from scenic.runtime.sampling.pace import Pace
 from scenic.runtime.sampling.pending import Pending, SceneTask, soft_address
 from scenic.runtime.sampling.profiling import Meter, Profile
-from scenic.runtime.sampling.report import Approximation, Exhausted, RejectionReport, rejection_rows
+from scenic.runtime.sampling.rejection_report import Approximation, Exhausted, RejectionReport, rejection_rows
 from scenic.runtime.sampling.stages import Stage, Stages
 
 DEFAULT_LANES = 4096

@@ -13,7 +13,7 @@ from scenic.runtime.geometry.ragged import distinct, expand
 from scenic.runtime.sampling.alike import GroupKind
 from scenic.runtime.sampling.apart import Apart, attempts_at_kind
 from scenic.runtime.sampling.engine import Engine
-from scenic.runtime.sampling.meeting import Bodies
+from scenic.runtime.sampling.group_collisions import Bodies
 
 __all__ = ["LEAVES", "GroupCandidates", "Queues"]
 

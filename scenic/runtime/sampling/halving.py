@@ -22,8 +22,8 @@ from numpy.typing import NDArray
 from scenic.dataclass import dataclass
 from scenic.graph.batch import Batch
 from scenic.graph.node import Graph
-from scenic.runtime.sampling.blocks import CheckPiece, Reads, blocks, coarse_pieces, merged, pieces
 from scenic.runtime.sampling.checks import Check, CollisionCheck
+from scenic.runtime.sampling.draw_blocks import CheckPiece, Reads, blocks, coarse_pieces, merged, pieces
 from scenic.runtime.sampling.engine import Engine, Plan
 
 __all__ = ["Divider", "Joint", "Tree", "any_passes", "may_fault"]

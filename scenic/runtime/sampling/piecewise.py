@@ -28,7 +28,7 @@ from scenic.runtime.sampling.joining import Joined, join
 from scenic.runtime.sampling.pairing import pair
 from scenic.runtime.sampling.pending import SceneTask
 from scenic.runtime.sampling.profiling import Meter, Profile
-from scenic.runtime.sampling.report import Approximation, Exhausted, joined
+from scenic.runtime.sampling.rejection_report import Approximation, Exhausted, joined
 
 __all__ = ["PiecewiseEngine"]
 

@@ -16,7 +16,7 @@ from scenic.runtime.instances.objects import Object
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.spaces import Workspace
 from scenic.runtime.sampling.engine import Accepted, CandidateError
-from scenic.runtime.sampling.report import Exhausted
+from scenic.runtime.sampling.rejection_report import Exhausted
 from scenic.runtime.scenes.external_candidates import ExternalCandidates, ExternalPoints
 from scenic.runtime.scenes.prefetching import SEED_BITS, Foreseen
 from scenic.runtime.scenes.restoring import Restoring

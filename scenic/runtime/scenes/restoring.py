@@ -8,7 +8,7 @@ from typing import ClassVar
 from scenic.graph.batch import Batch
 from scenic.language.errors import SerializationError
 from scenic.runtime.description.outcome import Program
-from scenic.runtime.sampling.planning import Outline
+from scenic.runtime.sampling.check_planning import Outline
 from scenic.runtime.scenes.pickled_values import RecalledBatch
 from scenic.runtime.scenes.sampler import Sampler
 from scenic.runtime.scenes.saving import SavedScene, draws_of, source_of

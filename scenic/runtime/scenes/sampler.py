@@ -12,16 +12,16 @@ from scenic.graph.draws import Counter, Lanes, Points, Source, Words
 from scenic.graph.node import Node
 from scenic.graph.points import PointSet
 from scenic.runtime.sampling.apart import OFTEN, rehearsed
+from scenic.runtime.sampling.check_planning import Outline
 from scenic.runtime.sampling.checks import NodeCheck
 from scenic.runtime.sampling.components import Components, components_of, crowd_of, divided
 from scenic.runtime.sampling.engine import Accepted, CandidateError, Engine, Plan
 from scenic.runtime.sampling.halving import SELDOM
 from scenic.runtime.sampling.pending import SceneTask
 from scenic.runtime.sampling.piecewise import PiecewiseEngine
-from scenic.runtime.sampling.planning import Outline
 from scenic.runtime.sampling.point_set_draws import driven
 from scenic.runtime.sampling.profiling import Meter, Profile
-from scenic.runtime.sampling.report import Exhausted
+from scenic.runtime.sampling.rejection_report import Exhausted
 from scenic.runtime.scenes.saving import fixed_draws
 
 PROOF_CANDIDATES = 200

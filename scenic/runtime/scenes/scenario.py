@@ -33,11 +33,11 @@ from scenic.runtime.instances.objects import Object
 from scenic.runtime.python.samples import dependencies
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.spaces import Workspace
+from scenic.runtime.sampling.acceptance_rates import ComponentEstimate, estimate
+from scenic.runtime.sampling.check_planning import Outline
 from scenic.runtime.sampling.engine import Accepted, CandidateError
-from scenic.runtime.sampling.estimating import ComponentEstimate, estimate
-from scenic.runtime.sampling.planning import Outline
 from scenic.runtime.sampling.profiling import Profile
-from scenic.runtime.sampling.report import Approximation, Exhausted
+from scenic.runtime.sampling.rejection_report import Approximation, Exhausted
 from scenic.runtime.scenes.external_candidates import ExternalCandidates
 from scenic.runtime.scenes.fingerprint import fingerprint
 from scenic.runtime.scenes.generating import Generating

@@ -18,7 +18,7 @@ from scenic.runtime.python.samples import dependencies
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.spaces import Workspace
 from scenic.runtime.sampling.engine import FinishedLanes
-from scenic.runtime.sampling.report import Approximation
+from scenic.runtime.sampling.rejection_report import Approximation
 from scenic.runtime.scenes.dumping import program_of
 from scenic.runtime.scenes.pickled_values import ValueLayout
 from scenic.runtime.scenes.population import Populations

@@ -16,7 +16,7 @@ from functools import reduce
 from typing import Final, TypeAlias
 
 from scenic.runtime.temporal.formulas import Formula
-from scenic.runtime.temporal.normal import Junction, Literal, Next, Normal, Obligation, Until, normal
+from scenic.runtime.temporal.normal_form import Junction, Literal, Next, Normal, Obligation, Until, normal
 
 __all__ = ["Robustness", "joint_margin"]
 

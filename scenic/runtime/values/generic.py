@@ -19,13 +19,13 @@ def call_later(function: object, /, *args: Any, **keywords: Any) -> Any:  # noqa
 
 @singledispatch
 def sample_of(value: object) -> Any:  # noqa: ARG001
-    """A single sample of a value, drawn now (`scenic.runtime.python.drawing`)."""
+    """A single sample of a value, drawn now (`scenic.runtime.python.single_samples`)."""
     raise InternalError("no module has registered samples of values")
 
 
 @singledispatch
 def support_of(value: object) -> tuple[float | None, float | None]:  # noqa: ARG001
-    """Return the least and the greatest value that a number can have (`scenic.runtime.python.drawing`)."""
+    """Return the least and the greatest value that a number can have (`scenic.runtime.python.single_samples`)."""
     raise InternalError("no module has registered supports of values")
 
 

@@ -15,7 +15,7 @@ from scenic.language.errors import ScenicValueError
 from scenic.runtime.description.outcome import Program, Requirement
 from scenic.runtime.instances.properties import update
 from scenic.runtime.python.samples import dependencies
-from scenic.runtime.sampling.planning import Outline
+from scenic.runtime.sampling.check_planning import Outline
 from scenic.runtime.values.generic import call_later
 from scenic.runtime.values.values import Orientation, Vector, as_node, operate, to_vector
 from scenic.simulators.commands import GRAVITY

@@ -7,7 +7,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from scenic.analysis.finite.network import Constraint, FiniteProblem, Reduced
+from scenic.analysis.finite.constraint_network import Constraint, FiniteProblem, Reduced
 from scenic.analysis.finite.occupying import Occupied, exclusives, occupied
 from scenic.analysis.finite.tables import Table
 

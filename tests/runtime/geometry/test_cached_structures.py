@@ -25,7 +25,7 @@ from scenic.runtime.geometry.meshes.voxels import voxels
 from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.geometry.views.hits import place, ray_scene
 from scenic.runtime.geometry.views.observers import Views
-from scenic.runtime.geometry.views.obstacles import Occluder
+from scenic.runtime.geometry.views.occluders import Occluder
 from scenic.runtime.geometry.views.occlusion_proofs import inner_boxes
 from scenic.runtime.geometry.views.seen_bodies import contains_own_centre, sees_bodies
 from scenic.runtime.geometry.views.subdivision import prove

@@ -5,8 +5,8 @@ import pytest
 import scenic
 from scenic.language.errors import UnknownPairError
 from scenic.runtime.regions.circular import CircularRegion
+from scenic.runtime.regions.fixed_intersections import MEETING
 from scenic.runtime.regions.lines import PathRegion
-from scenic.runtime.regions.meeting import MEETING
 from scenic.runtime.regions.pairs import Cell, PairTable
 from scenic.runtime.regions.planar import PlanarRegion
 from scenic.runtime.regions.rectangular import RectangularRegion

@@ -9,7 +9,7 @@ import scenic
 from scenic.formats.labels import body_of
 from scenic.language.errors import Located, ScenicTypeError
 from scenic.runtime.geometry.views.observers import Views
-from scenic.runtime.geometry.views.obstacles import Occluder
+from scenic.runtime.geometry.views.occluders import Occluder
 from scenic.runtime.geometry.views.seen_bodies import sees_bodies
 from scenic.runtime.geometry.views.seen_points import sees_points
 from tests.amounts import amount

@@ -10,7 +10,7 @@ import pytest
 from scenic.runtime.sampling.engine import Engine
 from scenic.runtime.sampling.pending import SceneTask
 from scenic.runtime.sampling.piecewise import PiecewiseEngine
-from scenic.runtime.sampling.report import Exhausted
+from scenic.runtime.sampling.rejection_report import Exhausted
 from scenic.runtime.scenes.scenario import Scenario
 from tests.amounts import LONG
 from tests.runtime.programs import scenario

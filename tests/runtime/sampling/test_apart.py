@@ -18,10 +18,10 @@ from scenic.runtime.geometry.meshes.bodies import Body
 from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.sampling import pairing
 from scenic.runtime.sampling.apart import Apart, rehearsed, separated
-from scenic.runtime.sampling.blocks import Reads
 from scenic.runtime.sampling.components import Components
+from scenic.runtime.sampling.draw_blocks import Reads
 from scenic.runtime.sampling.engine import Engine
-from scenic.runtime.sampling.meeting import Bodies
+from scenic.runtime.sampling.group_collisions import Bodies
 from scenic.runtime.sampling.piecewise import PiecewiseEngine
 from scenic.runtime.scenes.scenario import Scenario
 from tests.amounts import amount

@@ -11,7 +11,7 @@ from scipy import stats
 
 from scenic.language.errors import RejectionException
 from scenic.runtime.sampling.approximate import _correlation as measured
-from scenic.runtime.sampling.report import Approximation
+from scenic.runtime.sampling.rejection_report import Approximation
 from tests.amounts import amount
 from tests.cli.commands import run_here
 from tests.runtime.programs import FALSE_ALARM, fingerprint, scenario

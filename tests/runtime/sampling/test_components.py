@@ -11,7 +11,7 @@ from scipy import stats
 from scenic.graph.points import Sobol
 from scenic.language.errors import RejectionException
 from scenic.runtime.sampling.engine import Engine
-from scenic.runtime.sampling.report import Exhausted
+from scenic.runtime.sampling.rejection_report import Exhausted
 from scenic.runtime.scenes.scenario import Scenario
 from tests.amounts import amount
 from tests.runtime.programs import FALSE_ALARM, fingerprint, scenario

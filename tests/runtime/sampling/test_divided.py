@@ -9,7 +9,7 @@ from scipy import stats
 from scenic.graph.points import Sobol
 from scenic.runtime.sampling.components import components_of, divided
 from scenic.runtime.sampling.piecewise import PiecewiseEngine
-from scenic.runtime.sampling.report import Exhausted
+from scenic.runtime.sampling.rejection_report import Exhausted
 from scenic.runtime.scenes.scenario import Scenario
 from tests.amounts import amount
 from tests.runtime.programs import FALSE_ALARM, fingerprint, scenario

@@ -16,7 +16,7 @@ from scenic.language.errors import RejectionException, SamplingError
 from scenic.runtime.sampling.checks import NodeCheck
 from scenic.runtime.sampling.engine import BATCH_BYTES, BODY_BYTES, DEFAULT_LANES, Engine
 from scenic.runtime.sampling.pending import SceneTask
-from scenic.runtime.sampling.report import Exhausted
+from scenic.runtime.sampling.rejection_report import Exhausted
 from scenic.runtime.scenes.sampler import DEFAULT_ATTEMPTS
 from tests.amounts import LONG
 from tests.graph.programs import evaluate, faulty

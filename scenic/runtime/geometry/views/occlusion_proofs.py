@@ -14,7 +14,7 @@ from scenic.runtime.geometry.meshes.mesh import Mesh
 from scenic.runtime.geometry.meshes.voxels import RESOLUTION, voxels
 from scenic.runtime.geometry.poses import Booleans, Floats, Indices
 from scenic.runtime.geometry.views.hits import Placed
-from scenic.runtime.geometry.views.obstacles import Obstacles
+from scenic.runtime.geometry.views.occluders import Obstacles
 
 _MARGIN: Final = 1e-9
 """Share of the distance by which an occluder must be nearer than the target, so that rounding cannot fake a proof."""

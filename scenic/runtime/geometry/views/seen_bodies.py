@@ -25,7 +25,7 @@ from scenic.runtime.geometry.views.observers import (
     box_corners,
     extents,
 )
-from scenic.runtime.geometry.views.obstacles import Obstacles, Occluder
+from scenic.runtime.geometry.views.occluders import Obstacles, Occluder
 from scenic.runtime.geometry.views.occlusion_proofs import boxes_hidden
 from scenic.runtime.geometry.views.seen_points import hidden_points
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from scenic.runtime.geometry.poses import Booleans, Floats, Indices
 from scenic.runtime.geometry.views.observers import Views
-from scenic.runtime.geometry.views.obstacles import Obstacles, Occluder
+from scenic.runtime.geometry.views.occluders import Obstacles, Occluder
 
 
 def sees_points(views: Views, points: Floats, occluders: Sequence[Occluder], lanes: int) -> Booleans:

@@ -22,7 +22,7 @@ from scenic.runtime.geometry.poses import Booleans, Floats, Indices
 from scenic.runtime.geometry.ragged import expand
 from scenic.runtime.geometry.views.hits import Placed
 from scenic.runtime.geometry.views.observers import CORNERS, DISTANCE_SLACK, Extents, Views
-from scenic.runtime.geometry.views.obstacles import Occluder
+from scenic.runtime.geometry.views.occluders import Occluder
 from scenic.runtime.geometry.views.occlusion_proofs import boxes_hidden, shadowed
 from scenic.runtime.geometry.views.seen_bodies import SightBounds, bounded
 

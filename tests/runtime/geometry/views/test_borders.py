@@ -15,7 +15,7 @@ from scenic.runtime.geometry.meshes.mesh import Mesh
 from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.geometry.views.grid import rows_towards
 from scenic.runtime.geometry.views.observers import FULL_ANGLE_SLACK, Extents, Views
-from scenic.runtime.geometry.views.obstacles import Obstacles, Occluder, _meet_hull
+from scenic.runtime.geometry.views.occluders import Obstacles, Occluder, _meet_hull
 from scenic.runtime.geometry.views.seen_bodies import sees_bodies
 from scenic.runtime.geometry.views.seen_points import sees_points
 from scenic.runtime.geometry.views.subdivision import Proof, prove

@@ -16,7 +16,7 @@ from scenic.runtime.geometry.views import hits
 from scenic.runtime.geometry.views.grid import rows_towards
 from scenic.runtime.geometry.views.hits import exact_first, place
 from scenic.runtime.geometry.views.observers import Extents, Views
-from scenic.runtime.geometry.views.obstacles import Obstacles, Occluder
+from scenic.runtime.geometry.views.occluders import Obstacles, Occluder
 from scenic.runtime.geometry.views.occlusion_proofs import shadowed
 from scenic.runtime.geometry.views.seen_bodies import inside_body, sees_bodies
 from scenic.runtime.geometry.views.seen_points import sees_points

@@ -18,7 +18,7 @@ from scenic.runtime.geometry.views import seen_bodies as bodies
 from scenic.runtime.geometry.views import subdivision as proving
 from scenic.runtime.geometry.views import view_volumes as regions
 from scenic.runtime.geometry.views.observers import Views
-from scenic.runtime.geometry.views.obstacles import Obstacles, Occluder
+from scenic.runtime.geometry.views.occluders import Obstacles, Occluder
 from scenic.runtime.geometry.views.seen_points import hidden_points, sees_points
 from tests.recorded import FOLDER, hold
 from tests.runtime.geometry.samples import random_poses

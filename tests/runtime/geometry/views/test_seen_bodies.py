@@ -7,7 +7,7 @@ from scenic.runtime.geometry.meshes import primitives
 from scenic.runtime.geometry.meshes.bodies import Body
 from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.geometry.views.observers import Views
-from scenic.runtime.geometry.views.obstacles import Occluder
+from scenic.runtime.geometry.views.occluders import Occluder
 from scenic.runtime.geometry.views.seen_bodies import sees_bodies
 from scenic.runtime.geometry.views.seen_points import sees_points
 from tests.amounts import amount

@@ -11,7 +11,7 @@ from scenic.runtime.geometry.meshes.booleans import difference
 from scenic.runtime.geometry.meshes.mesh import Mesh
 from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.geometry.views.observers import Views
-from scenic.runtime.geometry.views.obstacles import Occluder
+from scenic.runtime.geometry.views.occluders import Occluder
 from scenic.runtime.geometry.views.occlusion_proofs import inner_boxes
 from scenic.runtime.geometry.views.seen_bodies import sees_bodies
 from scenic.runtime.geometry.views.subdivision import Proof, _Cells, prove

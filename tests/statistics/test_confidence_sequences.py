@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 from scipy.stats import beta, binomtest
 
-from scenic.statistics.sequences import is_checked, log_wealth, sequence_interval
+from scenic.statistics.confidence_sequences import is_checked, log_wealth, sequence_interval
 from tests.amounts import amount
 
 

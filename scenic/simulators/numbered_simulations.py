@@ -11,7 +11,7 @@ from scenic.graph.points import Sobol
 from scenic.language.errors import Located, RejectionException
 from scenic.language.spelling import nearest_option
 from scenic.runtime.dynamics.chosen_draws import driven
-from scenic.runtime.sampling.report import Exhausted
+from scenic.runtime.sampling.rejection_report import Exhausted
 from scenic.runtime.scenes.scenario import Scenario
 from scenic.simulators.simulation import OnState, Simulation
 from scenic.simulators.simulator import Simulator

@@ -4,9 +4,9 @@ from collections.abc import Iterator, Sequence
 
 from scenic.compiler.tokens import NAME
 from scenic.migration.class_names import ModuleNames
-from scenic.migration.instances import Dialect, makers, unknown_classes
+from scenic.migration.migration_rules import Note, decision
+from scenic.migration.missing_new import Dialect, makers, unknown_classes
 from scenic.migration.reserved import renamings
-from scenic.migration.rules import Note, decision
 from scenic.migration.texts import TextEdit, Token
 
 __all__ = ["rewritten_words"]

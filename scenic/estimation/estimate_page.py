@@ -11,7 +11,7 @@ import numpy as np
 from scenic.estimation.branching import Rare
 from scenic.estimation.estimate import Estimate, Tally
 from scenic.estimation.sentences import comparison_words, described, headline, method_words, notes, percent
-from scenic.falsification.report import page_of, table
+from scenic.falsification.search_page import page_of, table
 
 __all__ = ["estimate_page", "interval_plot"]
 

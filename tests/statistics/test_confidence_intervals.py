@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.stats import binom, binomtest
 
-from scenic.statistics.intervals import Interval, exact_interval
+from scenic.statistics.confidence_intervals import Interval, exact_interval
 
 CONFIDENCES = st.floats(0.5, 0.999)
 

@@ -8,9 +8,9 @@ import numpy as np
 
 from scenic.dataclass import dataclass
 from scenic.formats.camera import Camera
-from scenic.formats.instances import Array
+from scenic.formats.mesh_instances import Array
 from scenic.formats.poses import quaternion_of
-from scenic.formats.scenes import Scene, SceneObject
+from scenic.formats.scene_protocols import Scene, SceneObject
 from scenic.language.errors import Located
 from scenic.runtime.elements.sensors import DEFAULT_FIELD_OF_VIEW, CameraSensor
 

@@ -21,7 +21,7 @@ from scenic.formats.mesh_coordinates import coordinates_of
 from scenic.formats.painted_solids import Appearance
 from scenic.formats.poses import Four, Triple, quaternion_of, rotation_matrix
 from scenic.formats.road_users import AppearanceError, appearance_of
-from scenic.formats.scenes import Scene, SceneObject, UnitMesh
+from scenic.formats.scene_protocols import Scene, SceneObject, UnitMesh
 from scenic.runtime.geometry.patches import Lamp, Patch
 from scenic.runtime.regions.spaces import Workspace
 

@@ -10,7 +10,7 @@ is the distribution of Jeffreys, Beta(1/2, 1/2).
 import math
 from typing import Final
 
-from scenic.statistics.intervals import Interval
+from scenic.statistics.confidence_intervals import Interval
 
 __all__ = ["is_checked", "log_wealth", "sequence_interval"]
 

@@ -1,7 +1,7 @@
 import pytest
 
+from scenic.language.code_selection import Rules, is_lasting, is_selector, longest_match, similar_selector
 from scenic.language.diagnostics import CODES, Diagnostic, Severity
-from scenic.language.selection import Rules, is_lasting, is_selector, longest_match, similar_selector
 
 
 def warning(code: str) -> Diagnostic:

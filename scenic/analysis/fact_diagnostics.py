@@ -7,8 +7,8 @@ from typing import Final
 from scenic.analysis.contraction import contract
 from scenic.analysis.facts import Fact
 from scenic.analysis.smt import Contradiction, Support, judge
+from scenic.analysis.solver_terms import has_solver
 from scenic.analysis.supports import DISCRETE, DeadValues, dead_values
-from scenic.analysis.terms import has_solver
 from scenic.analysis.traces import contradictions
 from scenic.graph.bounding import overall
 from scenic.graph.domain import Domain

@@ -14,8 +14,8 @@ from scenic.language.errors import Located, ScenicError
 from scenic.language.source import Source, read_source
 from scenic.migration.converting import Converter
 from scenic.migration.embedded import convert_embedded
+from scenic.migration.migration_rules import Note
 from scenic.migration.python_names import old_names
-from scenic.migration.rules import Note
 
 __all__ = ["File", "convert_files", "convert_text", "write_file"]
 

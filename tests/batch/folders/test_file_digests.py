@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 import scenic
-from scenic.batch.folders.fingerprint import MISSING, file_digests
+from scenic.batch.folders.file_digests import MISSING, file_digests
 from tests.maps import straight
 
 MODULES = {

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from scenic.formats.camera import Camera, Outlook, framing
-from scenic.formats.instances import Array, Instance
+from scenic.formats.mesh_instances import Array, Instance
 from scenic.formats.poses import rotation_matrix
 from scenic.language.errors import ScenicError
 from scenic.language.spelling import nearest

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from graph.programs import make, one_of, uniform
 
+from scenic.analysis.fact_diagnostics import prove
 from scenic.analysis.facts import Fact
-from scenic.analysis.report import prove
 from scenic.deep.findings import deep_check
 from scenic.graph import node as graph
 from scenic.graph.kinds import Kind

@@ -7,7 +7,7 @@ import pytest
 
 import scenic
 from scenic.estimation.estimate import Estimate
-from scenic.estimation.following import FollowError
+from scenic.estimation.importance_sampling import FollowError
 from scenic.estimation.sentences import notes
 from scenic.falsification.replaying import kept_run, replay
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from scenic.formats.camera import Camera, Outlook
-from scenic.formats.following import BEHIND, CameraFollowError, Track
+from scenic.formats.chase_cameras import BEHIND, CameraFollowError, Track
 
 BEHIND_IT = Outlook(azimuth=BEHIND[0], elevation=BEHIND[1], follow="ego")
 

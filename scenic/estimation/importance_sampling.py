@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenic.dataclass import dataclass
-from scenic.falsification.store import manifest_of, read_rows
+from scenic.falsification.search_folder import manifest_of, read_rows
 from scenic.language.errors import Located
-from scenic.statistics.intervals import Interval
+from scenic.statistics.confidence_intervals import Interval
 from scenic.statistics.weighting import LEAST_EFFECTIVE, Proposal, effective_size, weighted_interval
 
 __all__ = ["FollowError", "Guide", "Weighted", "guide_of", "weighted_of"]

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from scenic.batch.folders.folder import NAME
-from scenic.falsification.store import ESTIMATE, EstimateFolderError, RunsFolder, kind_of, read_rows
+from scenic.falsification.search_folder import ESTIMATE, EstimateFolderError, RunsFolder, kind_of, read_rows
 
 __all__ = ["EstimateFolder", "EstimateFolderError", "estimates_in", "is_estimate", "joined", "manifest_of"]
 

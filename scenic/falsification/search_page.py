@@ -10,7 +10,7 @@ from typing import Any, Final
 import numpy as np
 
 from scenic.falsification.search import FalsificationResult
-from scenic.falsification.store import folders_of, manifest_of, read_rows
+from scenic.falsification.search_folder import folders_of, manifest_of, read_rows
 
 __all__ = ["importances", "load_result", "load_results", "page_of", "report_page", "table"]
 

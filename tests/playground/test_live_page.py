@@ -11,8 +11,8 @@ from typing import Any
 import pytest
 
 from scenic.ide.running import RunError
-from scenic.playground import watching
-from scenic.playground.watching import Watch, served
+from scenic.playground import live_page
+from scenic.playground.live_page import Watch, served
 
 
 def fetched(address: str, *, post: bool = False) -> str:
@@ -37,8 +37,8 @@ def test_scenes_and_report_follow_the_program(tmp_path: Path, monkeypatch: pytes
             raise RunError("error[SC202]: wrong")
         return f"{text} of seed {seed}, {count} scenes"
 
-    monkeypatch.setattr(watching, "sample_page", sampled)
-    monkeypatch.setattr(watching, "analysis_text", lambda filename, go_on: "what it costs")
+    monkeypatch.setattr(live_page, "sample_page", sampled)
+    monkeypatch.setattr(live_page, "analysis_text", lambda filename, go_on: "what it costs")
     program = tmp_path / "room.scenic"
     program.write_text("first")
     with served(Watch(program, count=3)) as address:

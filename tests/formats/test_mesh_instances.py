@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from scenic.formats.instances import picture, surface_of
+from scenic.formats.mesh_instances import picture, surface_of
 from scenic.formats.poses import euler_angles, quaternion_of, rotation_matrix
 from tests.formats.stand_ins import BALL, BOX, CYLINDER, Chair, Object, Scene, Turn
 

@@ -20,7 +20,7 @@ from scenic.formats.commonroad.obstacles import (
 )
 from scenic.formats.commonroad.records import RoadRecords, RoadSource
 from scenic.formats.files import write
-from scenic.formats.scenes import Scene
+from scenic.formats.scene_protocols import Scene
 from scenic.language.errors import UnsupportedError
 
 __all__ = ["CommonRoadFile", "commonroad_about", "commonroad_document", "document_text", "write_scene"]

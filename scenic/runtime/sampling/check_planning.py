@@ -11,10 +11,10 @@ from scenic.dataclass import dataclass
 from scenic.graph.bounding import forward, overall
 from scenic.graph.bounds import Bounds, Floats
 from scenic.graph.domain import Domain
-from scenic.graph.forms import Forms
 from scenic.graph.kinds import Kind
 from scenic.graph.node import Graph, Node
-from scenic.graph.operations.possibilities import is_finite
+from scenic.graph.node_forms import Forms
+from scenic.graph.operations.possible_faults import is_finite
 from scenic.language.errors import InvalidScenarioError
 from scenic.language.spans import Span
 from scenic.runtime.description.conditions import connect, truth
@@ -39,7 +39,7 @@ from scenic.runtime.sampling.checks import (
     NodeCheck,
     ObjectNodes,
 )
-from scenic.runtime.sampling.drawing import called, drawing_checks
+from scenic.runtime.sampling.draw_checks import called, drawing_checks
 from scenic.runtime.sampling.engine import Plan
 from scenic.runtime.sampling.sizes import extents, outgrows, size_in_words
 from scenic.runtime.values.values import CODEC, Random, as_node, fixed_batch, is_random, operate
