@@ -30,6 +30,9 @@ _TRUST: Final = 4
 _FIRST: Final = 512
 """Lanes of the first round, at most, if it has many attempts at a scene."""
 
+_FIRST_CALLS: Final = 16
+"""The same where code of the program is called in each lane: a call may take a tenth of a second."""
+
 _AHEAD: Final = (1, 2, 3, 4, 6, 8, 12, 16)
 """Attempts ahead that are weighed where all rounds to come are looked at."""
 
@@ -119,6 +122,8 @@ class Pace:
         """
         fixed_cost, lane = self.cost()
         most = max(1, min(self.most, most, int((_ROUND_SECONDS - fixed_cost) / lane)))
+        if self.calls_code and not self._rounds:
+            most = min(most, _FIRST_CALLS)
         lane_limit = min(most, max(waiting, _FIRST, _TRUST * self._largest))
         rejection_rate = 1 - self.acceptance
         if not more:

@@ -84,6 +84,9 @@ def test_rounds_take_little_time_and_grow_step_by_step() -> None:
         slow.add(lanes, 0, lanes / 10)
     chosen = slow.choose(100, 4096, more=True)
     assert chosen.scenes * chosen.ahead <= 20
+    unmeasured = Pace(4096, calls_code=True)
+    chosen = unmeasured.choose(100, 4096, more=True)
+    assert chosen.scenes * chosen.ahead <= 16
     cheap = Pace(1 << 20)
     for lanes in (100, 200, 400):
         cheap.add(lanes, 0, 0.01 + lanes * 1e-9)
