@@ -3,6 +3,7 @@
 A scene is one layer. Its meshes are in the layer itself, or in layers of a shared folder that it refers to as instances.
 """
 
+import hashlib
 import math
 from pathlib import Path
 from typing import Any, Final
@@ -245,7 +246,8 @@ class _Writer:
         else:
             name = mesh_name(solid.mesh)
             if solid.texture is not None:
-                name += f"_{solid.texture.digest()[:12]}"
+                # An image that is repeated has other coordinates at each size.
+                name += f"_{hashlib.sha256(texture_coordinates(solid).tobytes()).hexdigest()[:12]}"
             file = f"{FOLDER}/{name}.usdc"
             if file not in self._assets:
                 self._assets[file] = _mesh_layer(solid, name)

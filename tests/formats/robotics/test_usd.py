@@ -94,16 +94,23 @@ def test_an_image_becomes_the_colour_of_its_object(tmp_path: Path) -> None:
 
     Image.new("RGB", (4, 4), (200, 30, 10)).save(tmp_path / "wood.png")
     scenario = scenic.scenarioFromString(
-        "ego = new Object with texture 'wood.png', with shape ConeShape(), with length 2\n",
+        "ego = new Object with texture {'image': 'wood.png', 'scale': 1}, with shape ConeShape(), with length 2\n"
+        "big = new Object at (9, 0), with texture {'image': 'wood.png', 'scale': 1}, with shape ConeShape(), with length 4\n",
         filename=str(tmp_path / "a.scenic"),
     )
     stage = stage_of(tmp_path, next(iter(scenario.sample(1, seed=1))))
-    mesh = UsdGeom.Mesh(stage.GetPrimAtPath("/World/ego/geometry/mesh"))
-    prim = mesh.GetPrim() or stage.GetPrimAtPath("/World/ego/geometry")
+    # The image covers a metre, so that the meshes of the two sizes cannot be one.
+    repeats = [
+        np.ptp(
+            UsdGeom.PrimvarsAPI(stage.GetPrimAtPath(f"/World/{name}/geometry/mesh")).GetPrimvar("st").Get(),
+            axis=0,
+        )
+        for name in ("ego", "big")
+    ]
+    assert (repeats[1] > 1.5 * repeats[0]).any()
     material, _ = UsdShade.MaterialBindingAPI(
         stage.GetPrimAtPath("/World/ego/geometry")
     ).ComputeBoundMaterial()
     image = UsdShade.Shader(stage.GetPrimAtPath(f"{material.GetPath()}/image"))
     file = image.GetInput("file").Get()
     assert Path(file.resolvedPath).read_bytes() == (tmp_path / "wood.png").read_bytes()
-    del prim
