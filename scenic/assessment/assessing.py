@@ -54,9 +54,10 @@ def assess(scenario: Scenario, *, candidates: int = CANDIDATES, seed: int = 0) -
     values = tuple(
         ValueRow(
             _text(scenario.text, row),
-            None if row.span is None else row.span.line,
+            scenario.line_of(row.span, next((draws[graph.address(axis)].thing for axis in row.axes), "")),
             row,
             tuple(dict.fromkeys(draws[graph.address(axis)].thing for axis in row.axes)),
+            bool(row.axes) and all(graph.address(axis) in scenario.idle_draws for axis in row.axes),
         )
         for row in supports(graph, left)
     )

@@ -25,15 +25,22 @@ _SHOWN: Final = 5
 _MOST_OPTIONS: Final = 8
 """Options of a value that are shown."""
 
+_MOST_IDLE: Final = 6
+"""Values that are named, of those on which nothing depends."""
+
 
 @dataclass(frozen=True, slots=True)
 class ValueRow:
-    """A random value of the program: how it is written there, what it can be, and what it decides."""
+    """A random value of the program: how it is written there, what it can be, and what it decides.
+
+    ``is_idle`` is true if neither requirements nor simulations depend on it.
+    """
 
     text: str
     line: int | None
     support: DrawnSupport
     names: tuple[str, ...] = ()
+    is_idle: bool = False
 
     @property
     def name(self) -> str:
@@ -185,6 +192,16 @@ class Assessment:
             for row in self.values
             if row.support.removed > 0
         ]
+
+    @property
+    def idle(self) -> str | None:
+        """Words about the values on which nothing depends; ``None`` if there are none."""
+        rows = [row for row in self.values if row.is_idle]
+        if not rows:
+            return None
+        names = list(dict.fromkeys(name for row in rows for name in row.names))
+        listed = ", ".join(names[:_MOST_IDLE]) + (", ..." if len(names) > _MOST_IDLE else "")
+        return f"nothing depends on {len(rows)} more random values: {listed}"
 
     def to_data(self) -> dict[str, Any]:
         """Return the findings as plain data, as ``scenic analyze --json`` writes them."""

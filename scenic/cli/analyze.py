@@ -75,11 +75,14 @@ def _show(found: "Assessment") -> None:
     values.add_column("name", no_wrap=True)
     for heading in ("value", "line", "before", "after", "removed"):
         values.add_column(heading, overflow="fold")
-    for row in found.values:
+    shown = [row for row in found.values if not row.is_idle]
+    for row in shown:
         line = "" if row.line is None else str(row.line)
         values.add_row(row.name, row.text, line, row.before, row.after, f"{row.support.removed:.1%}")
-    if found.values:
+    if shown:
         console.print(values)
+    if found.idle is not None:
+        console.print(found.idle, soft_wrap=True, markup=False)
     for number, part in enumerate(found.components, start=1):
         of_part = f" of component {number}" if len(found.components) > 1 else ""
         checks = Table(

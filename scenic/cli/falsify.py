@@ -117,7 +117,8 @@ _FILES: Final = (FileSink("report", _report, lambda page: check_page(page, "--re
 @option("--time-limit T", "Seconds after which no new generation of points begins.", float, callback=seconds)
 @option(
     "--space",
-    "The space to search: external parameters, or all draws of the scene.",
+    "The space to search: external parameters, or all draws of the scene; auto: the former if there are any, else all draws on which "
+    "something depends, so not colours.",
     ["auto", "external", "scene"],
     default="auto",
 )

@@ -12,7 +12,7 @@ from scenic.batch.keeping import SimulationRecord, Watcher
 from scenic.dataclass import dataclass
 from scenic.falsification.objectives import Objective, ObjectiveError
 from scenic.falsification.search_folder import number
-from scenic.falsification.space import Floats, Space
+from scenic.falsification.space import Floats, Space, decides
 from scenic.formats.files import OutputError, make_folder, refusing, write
 from scenic.formats.trajectories import course_document
 from scenic.graph.draws import Words
@@ -119,8 +119,7 @@ class Evaluation:
             return self.most_attempts
         if not self.space.coordinates:
             return DEFAULT_ATTEMPTS
-        searched = {item.address for item in self.space.coordinates}
-        return 1 if all(axis.address in searched for axis in self.scenario.axes) else _ATTEMPTS
+        return 1 if decides(self.space, self.scenario) else _ATTEMPTS
 
     def together(self, first: int, numbers: Floats) -> Iterator[dict[str, Any]]:
         """Rows of the scenes of ``numbers`` ``(n, d)``, evaluated as columns; the first is run ``first``."""

@@ -8,7 +8,7 @@ import numpy as np
 from scenic.falsification.objectives import Objective
 from scenic.falsification.samplers import make_sampler
 from scenic.falsification.samplers.sampler import NoMorePointsError as NoMorePoints
-from scenic.falsification.space import space_of
+from scenic.falsification.space import decides, space_of
 from scenic.language.errors import InvalidScenarioError
 from scenic.runtime.sampling.rejection_report import Exhausted
 from scenic.runtime.scenes.scene import Scene
@@ -38,14 +38,14 @@ def sampled_by(
         objective: the number that samplers which learn make small; without it they are told only which points were rejected.
 
     """
-    space = space_of(scenario)
+    space = space_of(scenario, "external" if scenario.externals else "scene")
     if not len(space):
         raise InvalidScenarioError(
             "there is nothing that a sampler could choose: nothing in the program is random",
             help="draw something by `Range`, or `VerifaiRange`",
         )
     sampler = make_sampler(name, space, seed)
-    attempts = 1 if len(space) == len(scenario.axes) else _ATTEMPTS
+    attempts = 1 if decides(space, scenario) else _ATTEMPTS
     scene_count = 0
     while scene_count < count:
         try:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from scenic.runtime.scenes.naming import DrawName
     from scenic.runtime.scenes.scenario import Scenario
 
-__all__ = ["SHARE", "Coordinate", "Floats", "Space", "space_of", "worded"]
+__all__ = ["SHARE", "Coordinate", "Floats", "Space", "decides", "space_of", "worded"]
 
 SHARE: Final = "of its range"
 """In the place of the unit of a number from 0 to 1 of which only this is known."""
@@ -144,7 +144,7 @@ def space_of(scenario: "Scenario", wanted: str = "auto") -> Space:
     Args:
         scenario: the scenario.
         wanted: ``external`` for its external parameters, ``scene`` for all draws of a scene, ``auto`` for the
-            external parameters where there are any, ``none`` for no coordinates.
+            external parameters where there are any, else for all draws on which something depends, ``none`` for no coordinates.
 
     """
     if wanted == "none":
@@ -153,7 +153,16 @@ def space_of(scenario: "Scenario", wanted: str = "auto") -> Space:
     if wanted == "external" or (wanted == "auto" and externals):
         names = scenario.draw_names
         return Space(tuple(_external(place, item, names.get(place)) for place, item in externals.items()))
-    return Space(tuple(_drawn(axis.address, axis.name) for axis in scenario.axes))
+    left_out = scenario.idle_draws if wanted == "auto" else ()
+    return Space(
+        tuple(_drawn(axis.address, axis.name) for axis in scenario.axes if axis.address not in left_out)
+    )
+
+
+def decides(space: Space, scenario: "Scenario") -> bool:
+    """Return whether a point of a space leaves no draws open on which the requirements may depend."""
+    searched = {item.address for item in space.coordinates} | scenario.idle_draws
+    return all(axis.address in searched for axis in scenario.axes)
 
 
 def _drawn(address: int, name: "DrawName") -> Coordinate:

@@ -14,9 +14,10 @@ from scenic.language.properties import CLASSES, properties_of
 from scenic.language.spans import Span
 from scenic.runtime.description.definitions import Invocable
 from scenic.runtime.description.outcome import Program
-from scenic.runtime.instances.objects import Point
+from scenic.runtime.instances.objects import Object, Point
 from scenic.runtime.python.samples import dependencies
 from scenic.runtime.regions.base import Region
+from scenic.runtime.scenes.idle_draws import defaults
 from scenic.runtime.values.random_base import RandomBase
 
 __all__ = ["DrawName", "names_of_draws", "names_of_instances"]
@@ -82,8 +83,9 @@ def names_of_draws(program: Program, graph: Graph) -> dict[int, DrawName]:
     """The names of a program's draws, by address: those of all axes of a graph, and of others that variables hold.
 
     A draw is called after the first that depends on it: parameters and variables that depend on nothing else, then properties of
-    instances in the order in which these were made, what depends on few draws before what depends on many, then other variables. What
-    may look at other instances, like a behavior, comes last. Draws on which none of these depends are called after their place.
+    instances in the order in which these were made, points without a name after all others, what depends on few draws before what
+    depends on many, then other variables. What may look at other instances, like a behavior, comes last. Draws on which none of these
+    depends are called after their place.
 
     Args:
         program: a program that has run.
@@ -98,14 +100,21 @@ def names_of_draws(program: Program, graph: Graph) -> dict[int, DrawName]:
         for name, value in values.items()
         if isinstance(value, _PLAIN) and not name.startswith("__")
     ]
+    # The point that a default position is drawn as is nobody's but the object's.
+    items = sorted(
+        program.instances, key=lambda item: not isinstance(item, Object) and id(item) not in program.variables
+    )
     for name, value in variables:
         naming.name(name, value, most=1)
-    for item in program.instances:
+    for item in items:
         naming.instance(instances[id(item)], item, is_plain=True)
     for name, value in variables:
         naming.name(name, value)
-    for item in program.instances:
+    for item in items:
         naming.instance(instances[id(item)], item, is_plain=False)
+    for invocable in program.invocables:
+        for parameter, default in defaults(invocable._definition).items():
+            naming.name(f"{invocable.__name__}.{parameter}", default)
     return naming.finished()
 
 

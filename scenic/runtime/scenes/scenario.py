@@ -122,6 +122,7 @@ class Scenario(Generating):
         self._choosing: Sampler | None = None
         self._external_candidates: ExternalCandidates | None = None
         self._draw_names: dict[int, DrawName] | None = None
+        self._idle_draws: frozenset[int] | None = None
         self._approximation: Approximation | None = None
         self._family = Family(
             program,
@@ -190,6 +191,26 @@ class Scenario(Generating):
         if self._draw_names is None:
             self._draw_names = names_of_draws(self._program, self.outline.graph)
         return self._draw_names
+
+    @property
+    def idle_draws(self) -> frozenset[int]:
+        """The addresses of the draws on which neither requirements nor simulations depend."""
+        from scenic.runtime.scenes.idle_draws import idle_draws
+
+        if self._idle_draws is None:
+            self._idle_draws = idle_draws(self._program, self.outline.graph)
+        return self._idle_draws
+
+    def line_of(self, span: Span | None, thing: str) -> int | None:
+        """Return the line of the program that a draw belongs to: of a draw in a library, the line that creates the thing's owner."""
+        quotation = None if span is None else self._program.context.quote(span)
+        if span is None or quotation is None or quotation[0] == self.filename:
+            return None if span is None else span.line
+        owner = next(
+            (item for item, name in self.instance_names.items() if name == thing.partition(".")[0]), None
+        )
+        place, filename = self._program.places.get(owner or 0, (None, None))
+        return place.line if place is not None and filename == self.filename else None
 
     @property
     def externals(self) -> Mapping[int, Choosable]:

@@ -40,6 +40,15 @@ def test_draws_are_named_by_what_they_decide() -> None:
     assert not any(name.startswith(("near", "index")) for name in found)
 
 
+def test_default_positions_are_those_of_the_object_and_defaults_those_of_the_behavior() -> None:
+    found = named(
+        "class Toy:\n    position: new Point in CircularRegion((0, 0), 3)\n"
+        "behavior Go(speed=Range(1, 2)):\n    wait\nego = new Toy\nhome = new Point in CircularRegion((9, 9), 1)\n"
+    )
+    assert {name.partition(" ")[0] for name in found} == {"ego.position", "home.position", "Go.speed"}
+    assert found["Go.speed"] == ((1, 2), "")
+
+
 def test_values_are_those_of_scenes() -> None:
     scenario = scenic.scenarioFromString(PROGRAM)
     points = scenic.GivenPoints([[0.25 + 0.01 * place for place in range(len(scenario.axes))]])
