@@ -93,3 +93,21 @@ ego = new Car at (45, -5.25), facing -90 deg, with speed 15, with behavior Chang
 """
     done = simulated(tmp_path, text, "bend")
     assert 5.8 <= done.currentTime * 0.1 <= 6.6
+
+
+@pytest.mark.parametrize("x", [60, 70])
+def test_a_change_resumed_after_an_interrupt_keeps_on_the_road(tmp_path: Path, x: float) -> None:
+    (tmp_path / "island.xodr").write_text(with_island(after=300))
+    text = f"""
+behavior Change():
+    try:
+        do LaneChangeBehavior(network.laneAt((5, -1.75)), target_speed=15)
+        do FollowLaneBehavior(15)
+    interrupt when 5 <= simulation().currentTime < 15:
+        for _ in range(10):
+            take SetThrottleAction(0.4), SetSteerAction(0)
+ego = new Car at ({x}, -5.25), facing -90 deg, with speed 15, with behavior Change
+"""
+    done = simulated(tmp_path, text, "island", steps=220)
+    assert off_road(tmp_path / "island.xodr", done) < 0.15
+    assert course(done).places[-1, 1] == pytest.approx(-1.75, abs=0.05)

@@ -377,6 +377,7 @@ ego = new Car at (100, {-half}), facing -90 deg, with speed 3, with behavior Tur
         motion.velocities,
         np.column_stack([-np.sin(motion.headings), np.cos(motion.headings)])[1:],
     )
+    assert motion.jerk.max() < 8
     signs = np.sign(along[np.abs(along) > 0.05])
     assert 1 + int((np.diff(signs) != 0).sum()) == moves
 

@@ -2,7 +2,7 @@
 
 import math
 from bisect import bisect_right
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from copy import deepcopy
 from typing import Any, Final
 
@@ -17,13 +17,13 @@ from scenic.domains.driving.car_following import (
 )
 from scenic.domains.driving.path_smoothing import TIGHTEST
 from scenic.domains.driving.paths import Path
-from scenic.domains.driving.planning import join, speeds_of
+from scenic.domains.driving.planning import Pace, join, speeds_of
 from scenic.domains.driving.running_traffic import ADVICE, running_traffic
 from scenic.domains.driving.speed_profiles import Comfort
 from scenic.domains.driving.watching import InsideWatch
 from scenic.language.errors import InvalidScenarioError
 
-__all__ = ["Driver"]
+__all__ = ["Driver", "stopping_acceleration"]
 
 
 _GRIP: Final = 6.0
@@ -150,21 +150,25 @@ class Driver:
             near: metres along the path about which the car is, of a path that comes back to where it was.
 
         """
-        if path is not self._path:
-            x, y = self._place()
-            self._index, _, _ = path.locate(x, y, path.nearest(x, y, near))
+        x, y = self._place()
+        first = path.nearest(x, y, near) if path is not self._path else self._index
+        self._index, share, _ = path.locate(x, y, first)
         self._path, self._begin = path, self._index
         self._simulation.drivers[id(self._agent)] = self
         self._stop = None if stops is None else _point_before(path.along, path.length - stops)
+        acceleration = max(self._acceleration, -self.comfort.deceleration)
+        # The profile begins at a point of the path behind the car.
+        behind = min(max(share, 0.0), 1.0) * (path.along[self._index + 1] - path.along[self._index])
+        speed = math.sqrt(max(self._agent.speed**2 - 2 * acceleration * behind, 0.0))
         self._speeds, self._accelerations = speeds_of(
             path,
             self._index,
             target,
-            self._agent.speed,
+            speed,
             self.comfort,
             limits=limits,
             stops=stops,
-            acceleration=max(self._acceleration, -self.comfort.deceleration),
+            acceleration=acceleration,
             junctions=junctions,
         )
         self._look = 0.0
@@ -200,11 +204,11 @@ class Driver:
         speed: float,
         duration: float = 0.0,
         near: float | None = None,
-        reach: Callable[[float, float], float] | None = None,
+        pace: Pace | None = None,
     ) -> float:
         """Bend a path so that the car joins it at a speed, from its present curvature; see `join`."""
         curvature = None if self._is_fresh else self._curvature
-        return join(path, self._place(), self._agent.heading, speed, duration, near, curvature, reach)
+        return join(path, self._place(), self._agent.heading, speed, duration, near, curvature, pace)
 
     # Controllers that programs ask for
 
@@ -277,7 +281,7 @@ class Driver:
         own_place = lengths[index] + share * (lengths[index + 1] - lengths[index])
         is_stopping = self._stop is not None and self._stop - own_place < _STOPPING
         if self._stop is not None and is_stopping:
-            acceleration = _stopping(speed, self._stop - own_place, timestep)
+            acceleration = stopping_acceleration(speed, self._stop - own_place, timestep)
         else:
             acceleration = along + _SETTLING * (target_speed - speed)
         if self._gap is not None:
@@ -380,7 +384,11 @@ class Driver:
         if self._is_fresh:
             self._is_fresh = False
             self._curvature = min(max(curve, -most), most)
-        asked = 0.0 if self._planned is None else abs(curve - self._planned)
+        if self._planned is None:
+            earlier = path.index_at(ahead - way, index)
+            part = (ahead - way - lengths[earlier]) / (lengths[earlier + 1] - lengths[earlier])
+            self._planned = curvatures[earlier] + part * (curvatures[earlier + 1] - curvatures[earlier])
+        asked = abs(curve - self._planned)
         change = max(_LATERAL_JERK * timestep / square, asked + _CORRECTING * timestep / square)
         if abs(offset) > _FAR:
             change = max(change, _TURNING * timestep)
@@ -413,7 +421,7 @@ def _point_before(along: Sequence[float], place: float) -> float:
     return along[max(1, bisect_right(along, place) - 1)]
 
 
-def _stopping(speed: float, left: float, timestep: float) -> float:
+def stopping_acceleration(speed: float, left: float, timestep: float) -> float:
     """Return the acceleration (m/s^2) by which a car comes to rest metres ahead, with a deceleration that falls evenly to nothing.
 
     Over a time T from b to nothing, b T / 2 of speed and b T^2 / 6 of distance are left.

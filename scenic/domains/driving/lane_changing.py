@@ -1,17 +1,19 @@
 """Drivers that change lanes: where the road lies under the whole of the change, now or at the next place."""
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
+from operator import attrgetter
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from scenic.dataclass import dataclass
 from scenic.domains.driving.car_following import Gap
 from scenic.domains.driving.elements import Lane, LaneSection
 from scenic.domains.driving.lane_driving import LaneDriver, junctions_of, turned_from
 from scenic.domains.driving.paths import Path
-from scenic.domains.driving.planning import MotionPlan, speeds_of
+from scenic.domains.driving.planning import MotionPlan, Pace, speeds_of
 from scenic.domains.driving.speed_profiles import Comfort
 from scenic.language.errors import InvalidScenarioError
 from scenic.runtime.values.describing import wrong_type
@@ -20,22 +22,46 @@ Floats = NDArray[np.float64]
 
 __all__ = ["LaneChanger"]
 
-_SHARES: Final = (1.0, 0.9, 0.8, 0.001)
+_SHARES: Final = (1.0, 0.9, 0.8, 0.001, 1.25, 1.5)
 """Shares of the time that is asked which are tried; some seconds are needed in any case."""
+_JOLT: Final = 7.6
+"""Change of the acceleration (m/s^3) up to which changes are planned."""
 _HARDER: Final = 1.3
 """Times the comfortable deceleration up to which a car brakes for a lane change, or in the lane."""
+_ON: Final = 0.3
+"""Metres from its way within which a car goes on along it after an interrupt."""
+_TURNED: Final = 0.1
+"""Angle (radians) from it within which it does."""
+_ACROSS: Final = math.sin(math.radians(20))
+"""Sine of the angle from its lane from which on a car does not keep to that."""
+_GENTLE: Final = 3.4
+"""Change of the lateral acceleration (m/s^3) by which it does what is left of a change."""
 _BESIDE: Final = 0.1
 """Metres by which a corner of a car may leave the road in a lane change."""
 _AGAIN: Final = 0.5
 """Seconds after which a car looks again whether it can change lanes."""
 _FARTHEST: Final = 500.0
 """Metres of way on which a car looks for a place to change lanes."""
-_SPARE: Final = 1.06
-"""Times the least seconds of a change that it takes at the greatest speed: a car that speeds up is jolted more at its end."""
 _MOST: Final = 9
 """Lanes to either side that are looked at."""
-_CREEP: Final = 0.05
-"""Speed (m/s) as which standing counts where times are computed."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Way:
+    """A way into a lane.
+
+    Attributes:
+        path: bent so that the car joins the lane.
+        distance: metres until it is there.
+        beside: metres by which it leaves the road for that.
+        is_comfortable: it neither brakes hard nor is jolted.
+
+    """
+
+    path: Path
+    distance: float
+    beside: float
+    is_comfortable: bool
 
 
 class LaneChanger(LaneDriver):
@@ -89,7 +115,7 @@ class LaneChanger(LaneDriver):
         self.drive_by("change")
 
     def _begin_plan(self, lane: Lane, duration: float = 0.0) -> None:
-        super()._begin_plan(lane, self._duration if self._own is None else duration)
+        super()._begin_plan(lane, duration or (self._duration if self._own is None else 0.0))
 
     def _cover(self) -> None:
         is_new = not self._path.along
@@ -119,32 +145,45 @@ class LaneChanger(LaneDriver):
     def _join_plan(self) -> bool:
         if self._own is not None:
             return super()._join_plan()
-        plan, near = self._plan, self._near
-        change = self._change_to(plan, near)
-        if change is not None:
-            plan.path, self.joining = change
-        elif self._keeps_own_lane():
+        plan, near, time = self._plan, self._near, self._joining_time
+        change = self._change_to(plan, near, time)
+        if change is None and self._keeps_own_lane():
             return False
-        else:
-            # Who is in the lane already, or off all lanes, can only go there.
-            self.joining = self._join(plan.path, self._agent.speed, self._duration, near)
+        # Who is in the lane already, or off all lanes, can only go there: where the road is left least.
+        least = change or min(self._ways(plan, near, time), key=attrgetter("beside"))
+        plan.path, self.joining = least.path, least.distance
         return True
 
-    def _change_to(self, plan: MotionPlan, near: float) -> tuple[Path, float] | None:
-        """The path of a plan, bent so that the car joins it from metres along it, and the metres of that; ``None`` if that cannot be."""
+    def _change_to(self, plan: MotionPlan, near: float, time: float) -> "_Way | None":
+        """A way into the path of a plan that the car joins from metres along it in seconds; ``None`` if there is none."""
+        fitting = (way for way in self._ways(plan, near, time) if way.beside <= 0.0 and way.is_comfortable)
+        return next(fitting, None)
+
+    def _ways(self, plan: MotionPlan, near: float, time: float) -> Iterator["_Way"]:
         path, stops = plan.path, self._stops(plan)
         x, y = self._place()
         begin, _, _ = path.locate(x, y, path.nearest(x, y, near))
-        reach = self._reach(path, begin, stops)
+        pace = self._pace_on(path, begin, stops)
         for share in _SHARES:
             bent = path.copy()
-            distance = self._join(bent, self._agent.speed, share * self._duration, near, reach)
-            if not self._is_on_road(bent, path, begin, distance):
-                continue
-            _, rates = self._profile(bent, begin, stops)
-            if min(rates) >= -_HARDER * self.comfort.deceleration:
-                return bent, distance
-        return None
+            distance = self._join(bent, self._agent.speed, share * time, near, pace)
+            beside = self._beside_road(bent, path, begin, distance)
+            is_comfortable = beside <= 0.0 and self._is_comfortable(bent, begin, distance, stops)
+            yield _Way(bent, distance, beside, is_comfortable)
+
+    def _is_comfortable(self, bent: Path, begin: int, distance: float, stops: float | None) -> bool:
+        """Return whether the car neither brakes hard where it joins a path, or later, nor is jolted."""
+        profile, changes = self._profile(bent, begin, stops)
+        if min(changes) < -_HARDER * self.comfort.deceleration:
+            return False
+        end = bent.index_at(bent.along[begin] + distance, begin) + 1
+        if end - begin < 3:
+            return True
+        speeds, along = np.array(profile[: end - begin]), np.array(bent.along[begin:end])
+        side = np.array(bent.curvatures[begin:end]) * speeds**2
+        rate = (speeds[1:] + speeds[:-1]) / 2 / np.diff(along)
+        jolts = np.hypot(np.diff(side) * rate, np.diff(changes[: end - begin]) * rate)
+        return bool(jolts.max() <= _JOLT)
 
     def _profile(self, path: Path, begin: int, stops: float | None) -> tuple[list[float], list[float]]:
         """Speeds and accelerations of the car at the points of a path from an index on."""
@@ -160,23 +199,17 @@ class LaneChanger(LaneDriver):
             junctions=junctions_of(path),
         )
 
-    def _reach(self, path: Path, begin: int, stops: float | None) -> Callable[[float, float], float]:
-        """The way of the car along a path by its speed profile, as `join` asks for it."""
-        profile, _ = self._profile(path, begin, stops)
-        along, speeds = np.array(path.along[begin:]) - path.along[begin], np.array(profile)
-        means = np.maximum((speeds[1:] + speeds[:-1]) / 2, _CREEP)
-        moments = np.concatenate([[0.0], np.cumsum(np.diff(along) / means)])
+    def _pace_on(self, path: Path, begin: int, stops: float | None) -> Pace:
+        """The pace of the car along a path by its speed profile."""
+        x, y = self._place()
+        along, speeds = np.array(path.along[begin:]), np.array(self._profile(path, begin, stops)[0])
+        place = path.along_at(x, y, begin)
+        ahead = along > place
+        now = np.interp(place, along, speeds)
+        return Pace.planned(np.append(0.0, along[ahead] - place), np.append(now, speeds[ahead]))
 
-        def reach(time: float, least: float) -> float:
-            distance = float(np.interp(time, moments, along))
-            # A car that sets out is slow where the change bends most at first, and keeps to what its second bend allows.
-            fastest = float(speeds[: int(np.searchsorted(along, distance / 2)) + 1].max())
-            return max(distance, _SPARE * fastest * least)
-
-        return reach
-
-    def _is_on_road(self, bent: Path, path: Path, begin: int, distance: float) -> bool:
-        """Return whether the car stays on the road where it joins a path, or leaves it no more than now, or than on the path."""
+    def _beside_road(self, bent: Path, path: Path, begin: int, distance: float) -> float:
+        """Metres by which the car leaves the road where it joins a path, beyond what it leaves it by now, or on the path."""
         import shapely
 
         end = bent.index_at(bent.along[begin] + distance, begin) + 1
@@ -185,7 +218,7 @@ class LaneChanger(LaneDriver):
         corners = self._corners(bent, begin, end)
         outside = np.flatnonzero(~shapely.contains_xy(road, *corners.T))
         if not len(outside):
-            return True
+            return 0.0
 
         def away(places: Floats) -> Floats:
             distances: Floats = shapely.distance(road, shapely.points(places))
@@ -193,7 +226,7 @@ class LaneChanger(LaneDriver):
 
         permitted = np.maximum(away(self._corners(path, begin, end)[outside]), _BESIDE)
         permitted = np.maximum(permitted, away(corners[:4]).max())
-        return bool((away(corners[outside]) <= permitted).all())
+        return max(0.0, float((away(corners[outside]) - permitted).max()))
 
     def _corners(self, path: Path, begin: int, end: int) -> Floats:
         """The corners ``(4 n, 2)`` of the car at points of a path."""
@@ -208,17 +241,39 @@ class LaneChanger(LaneDriver):
         ]
         return np.stack(corners, axis=1).reshape(-1, 2)
 
+    def _take_up(self) -> None:
+        """Go on after an interrupt: change lanes anew if the car has left its way, from where it is now."""
+        import shapely
+
+        x, y = self._place()
+        index, _, offset = self._path.locate(x, y, self._path.nearest(x, y, self._path.along[self._index]))
+        turned = self._agent.heading - self._path.headings[index]
+        is_on = abs(offset) < _ON and abs(math.sin(turned)) < _TURNED
+        if self._has_given_up or is_on:
+            super()._take_up()
+            return
+        self.resume()
+        under = self._agent.roadNetwork.laneAt(self._agent.position)
+        if self._own is None:
+            assert self._lane is not None
+            self._end = math.inf
+            left = float(shapely.distance(shapely.linestrings(self._lane.line), shapely.points(x, y)))
+            self._begin_plan(self._lane, min(self._duration, math.cbrt(60.0 * left / _GENTLE)))
+        elif under is not None:
+            self._own = under
+            self._begin_plan(under)
+
     # Looking for a place
 
     def _keeps_own_lane(self) -> bool:
         """Follow the own lane until there is a place for the change; return false if the car is in no other lane."""
         agent = self._agent
         own = agent.roadNetwork.laneAt(agent.position)
-        if own is None or own is self._asked:
+        if own is None or own is self._lane or abs(math.sin(turned_from(agent, own))) > _ACROSS:
             return False
         self._own = own
         sides = (
-            side for part in own.sections for side, beside in _lanes_beside(part) if beside is self._asked
+            side for part in own.sections for side, beside in _lanes_beside(part) if beside is self._lane
         )
         self._side = next(sides, None)
         self._begin_plan(own)
@@ -249,7 +304,7 @@ class LaneChanger(LaneDriver):
         most = near + 1.5 * self._duration * max(self._agent.speed, self._target)
         while not plan.is_complete and plan.path.length < most:
             plan.choose(plan.choices[0])
-        if plan.path.length > 0 and self._change_to(plan, near) is not None:
+        if plan.path.length > 0 and self._change_to(plan, near, self._duration) is not None:
             self._own, self._lane, self._is_joined = None, target, False
             self._follow(plan, near, self._duration, backward=backward)
 

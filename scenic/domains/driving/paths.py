@@ -319,7 +319,10 @@ class Path:
         y = np.array(self._y[begin:end]) - offsets * np.sin(headings)
         self._x[begin:end], self._y[begin:end] = x.tolist(), y.tolist()
         low, high = max(0, begin - 2), min(len(self._x), end + 2)
-        piece = piece_along(self.points()[low:high])
+        # What the ends of a piece are like is known only from the points beyond them.
+        cut = (1 if low else 0, 1 if high < len(self._x) else 0)
+        piece = piece_along(self.stretch(low, high), cut=cut)
+        low, high = low + cut[0], high - cut[1]
         turns = 2 * math.pi * round((self.headings[low] - float(piece.headings[0])) / (2 * math.pi))
         self.headings[low:high] = (piece.headings + turns).tolist()
         self.curvatures[low:high] = piece.curvatures.tolist()

@@ -1,7 +1,7 @@
 """Plans of drivers: a path ahead, made longer as the car goes on, and the speeds on it."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any, Final
 
 import numpy as np
@@ -13,7 +13,7 @@ from scenic.domains.driving.path_smoothing import TIGHTEST, resampled, smoothed
 from scenic.domains.driving.paths import Path, PathPieces, is_long, piece_along
 from scenic.domains.driving.speed_profiles import Comfort, speeds_along, speeds_in_bends
 
-__all__ = ["MotionPlan", "join", "path_of_lines", "speeds_of"]
+__all__ = ["MotionPlan", "Pace", "join", "path_of_lines", "speeds_of"]
 
 Floats = NDArray[np.float64]
 
@@ -27,6 +27,8 @@ _PULL: Final = 0.5
 """Lateral acceleration (m/s^2) by which the car would leave the path, with its steering wheel as it is, from which it does."""
 _SHARPEST: Final = 0.2
 """Curvature (1/m) of curves by which a car joins a path."""
+_SLOW: Final = 4.0
+"""Speed (m/s) at which times along a path are computed where a car is slower: it bends its way no more than this lets it."""
 
 
 class MotionPlan:
@@ -106,6 +108,41 @@ def path_of_lines(lines: Sequence[Floats], tightest: float = TIGHTEST) -> Path:
     return Path(piece_along(points))
 
 
+class Pace:
+    """When a car is where on its way.
+
+    Args:
+        along: metres ``(n,)`` ahead of the car; the first are 0.
+        speeds: there ``(n,)``, m/s, all positive.
+
+    """
+
+    def __init__(self, along: Floats, speeds: Floats) -> None:
+        self._along, self._speeds = along, speeds
+        means = (speeds[1:] + speeds[:-1]) / 2
+        self._moments = np.concatenate([[0.0], np.cumsum(np.diff(along) / means)])
+        self._changes = np.gradient(speeds, along) if len(along) > 1 else np.zeros(len(along))
+
+    @classmethod
+    def planned(cls, along: Floats, speeds: Floats) -> "Pace":
+        """The pace by a speed profile; of a car that is slow, what it would be a little faster."""
+        return cls(along, (speeds**4 + _SLOW**4) ** 0.25)
+
+    def way(self, time: float) -> float:
+        """Metres that the car goes in seconds."""
+        beyond = time - self._moments[-1]
+        if beyond > 0:
+            return float(self._along[-1] + beyond * self._speeds[-1])
+        return float(np.interp(time, self._moments, self._along))
+
+    def at(self, ahead: Floats) -> tuple[Floats, Floats, Floats]:
+        """Seconds until the car is at places ``(k,)`` metres ahead, its speeds there, and their changes (1/s) by the metre."""
+        beyond = ahead - np.clip(ahead, 0.0, self._along[-1])
+        speeds = np.interp(ahead, self._along, self._speeds)
+        moments = np.interp(ahead, self._along, self._moments) + beyond / speeds
+        return moments, speeds, np.where(beyond == 0, np.interp(ahead, self._along, self._changes), 0.0)
+
+
 def join(
     path: Path,
     place: Any,
@@ -114,12 +151,12 @@ def join(
     duration: float = 0.0,
     near: float | None = None,
     curvature: float | None = None,
-    reach: Callable[[float, float], float] | None = None,
+    pace: Pace | None = None,
 ) -> float:
     """Bend a path so that it begins where a car is, in the direction of the car: a lateral offset of least jerk.
 
-    The offset is the polynomial of fifth order that has the offset, slope and curvature of the car at its beginning, and none at
-    its end (T. Flash and N. Hogan, The Coordination of Arm Movements, 1985).
+    The offset is the polynomial of fifth order in time that has the offset, slope and curvature of the car at its beginning, and
+    none at its end (T. Flash and N. Hogan, The Coordination of Arm Movements, 1985).
 
     Args:
         path: the path, which changes.
@@ -129,8 +166,7 @@ def join(
         duration: seconds that the car takes at least; 0 for as few as comfort allows.
         near: metres along the path about which the car is.
         curvature: of the way of the car, in 1/m, positive to the left; that of the path by default.
-        reach: metres that the car goes in some seconds, and at least as many as other seconds take it at its greatest speed in
-            them; at its present speed by default.
+        pace: of the car on its way; its present speed by default.
 
     Returns:
         Metres along the path until the car is on it.
@@ -153,55 +189,74 @@ def join(
     # The acceleration of a curve of least jerk is 5.77 d / T^2 at most, of which 2 m/s^2 are allowed, and its jerk 60 d / T^3, of
     # which 3.4 m/s^3 are unless a time is given; the jerk of a slope m is 36 m v / T^2.
     time = duration or math.cbrt(60.0 * abs(offset) / 3.4)
-    least = math.sqrt(5.77 * abs(offset) / 2.0)
-    time = max(time, least)
+    time = max(time, math.sqrt(5.77 * abs(offset) / 2.0))
     time = max(time, min(3.0 * math.sqrt(abs(slope) * speed), 4.0))
     # Acceleration `pull` ends with a jerk of 9 pull / T at first; longer ways would lead too far from the path.
     time = max(time, min(1.3 * pull, 2.0))
-    distance = max(speed * time if reach is None else reach(time, least), 4.0, 6.0 * abs(offset) ** 0.5)
-    along = np.array(path.along)
+    if pace is None:
+        even = max(speed, 4.0 / time, 6.0 * abs(offset) ** 0.5 / time)
+        pace = Pace(np.array([0.0]), np.array([even]))
+    along, curvatures = np.array(path.along), np.array(path.curvatures)
     start = along[index] + share * (along[index + 1] - along[index])
     left = along[-1] - start
-    curvatures = np.array(path.curvatures)
-    for _ in range(8):
-        count = int(np.searchsorted(along, start + min(distance, left), side="right"))
-        if distance >= left or count - index < 6:
+    bends, least = _Offset(pace, time, offset, slope, bend), math.inf
+    for attempt in range(9):
+        longer = _Offset(pace, 1.3**attempt * time, offset, slope, bend)
+        count = int(np.searchsorted(along, start + longer.distance, side="right"))
+        if longer.distance >= left or count - index < 6:
             break
-        share_done = np.clip((along[index:count] - start) / distance, 0.0, 1.0)
-        second = _second_derivative(share_done, offset, slope * distance, bend * distance**2) / distance**2
-        if np.abs(second + curvatures[index:count]).max() <= max(
-            _SHARPEST, 1.05 * np.abs(curvatures[index:count]).max(), abs(curvature or 0.0)
-        ):
+        ahead = np.maximum(along[index:count] - start, 0.0)
+        sharpest = float(np.abs(longer.curvatures(ahead) + curvatures[index:count]).max())
+        if sharpest < least:
+            bends, least = longer, sharpest
+        known = max(float(np.abs(curvatures[index:count]).max()), abs(curvature or 0.0))
+        if sharpest <= max(_SHARPEST, 1.05 * known):
             break
-        distance *= 1.3
-    distance = min(distance, max(left, 1.0))
-    count = int(np.searchsorted(along, start + distance, side="right"))
-    share_done = (along[:count] - start) / distance
+    if bends.distance > max(left, 1.0):
+        bends = _Offset(pace, float(pace.at(np.array([max(left, 1.0)]))[0][0]), offset, slope, bend)
+    count = int(np.searchsorted(along, start + bends.distance, side="right"))
     # The path bends to where it was behind the car, where nobody looks at its curvature.
     begin = max(0, index - 8)
-    offsets = _offset(share_done[begin:], offset, slope * distance, bend * distance**2)
-    path.shifted(begin, offsets)
-    return float(distance)
+    path.shifted(begin, bends.offsets(along[begin:count] - start))
+    return bends.distance
 
 
-def _offset(share: Floats, offset: float, slope: float, bend: float) -> Floats:
-    """The polynomial of fifth order from an offset and its two derivatives at 0 to nothing at 1, where it has none."""
-    t = np.minimum(share, 1.0)
-    rest: Floats = (
-        offset * (1 - 10 * t**3 + 15 * t**4 - 6 * t**5)
-        + slope * (t - 6 * t**3 + 8 * t**4 - 3 * t**5)
-        + bend * (t**2 - 3 * t**3 + 3 * t**4 - t**5) / 2
-    )
-    return np.where(share < 0, offset + slope * share + bend * share**2 / 2, rest)
+class _Offset:
+    """The polynomial of fifth order in time from an offset and its two derivatives along the way at 0 to nothing, where it has none.
 
+    Args:
+        pace: of the car.
+        time: seconds that it takes.
+        offset: metres to the left of the path.
+        slope: radians from it, to the left.
+        bend: curvature (1/m) against it.
 
-def _second_derivative(t: Floats, offset: float, slope: float, bend: float) -> Floats:
-    result: Floats = (
-        offset * (-60 * t + 180 * t**2 - 120 * t**3)
-        + slope * (-36 * t + 96 * t**2 - 60 * t**3)
-        + bend * (1 - 9 * t + 18 * t**2 - 10 * t**3)
-    )
-    return result
+    """
+
+    def __init__(self, pace: Pace, time: float, offset: float, slope: float, bend: float) -> None:
+        self.time, self.distance = time, pace.way(time)
+        self._pace, self._first = pace, (offset, slope, bend)
+        _, (speed,), (change,) = pace.at(np.zeros(1))
+        rate = slope * speed * time
+        bent = (bend * speed * speed + slope * speed * change) * time * time
+        terms = offset * np.array([1.0, 0.0, 0.0, -10.0, 15.0, -6.0])
+        terms += rate * np.array([0.0, 1.0, 0.0, -6.0, 8.0, -3.0])
+        terms += bent / 2 * np.array([0.0, 0.0, 1.0, -3.0, 3.0, -1.0])
+        self._curve = np.polynomial.Polynomial(terms)
+
+    def offsets(self, ahead: Floats) -> Floats:
+        """Metres ``(k,)`` to the left of the path at places ``(k,)`` metres ahead of the car, or behind it."""
+        share = np.clip(self._pace.at(np.maximum(ahead, 0.0))[0] / self.time, 0.0, 1.0)
+        offset, slope, bend = self._first
+        return np.where(ahead < 0, offset + slope * ahead + bend * ahead**2 / 2, self._curve(share))
+
+    def curvatures(self, ahead: Floats) -> Floats:
+        """Curvatures ``(k,)`` that these add to those of the path at places ``(k,)`` metres ahead, before the end."""
+        moments, speeds, changes = self._pace.at(ahead)
+        share = np.clip(moments / self.time, 0.0, 1.0)
+        first, second = (self._curve.deriv(order)(share) / self.time**order for order in (1, 2))
+        added: Floats = (second - first * changes) / speeds**2
+        return added
 
 
 def speeds_of(

@@ -35,6 +35,8 @@ _CLASSES: Final = (3.0, 6.0, 12.0, 24.0, 60.0)
 """Classes of speeds (m/s) by their upper bounds."""
 _CREEP: Final = 0.05
 """Speed (m/s) below which a car counts as standing."""
+_MORE: Final = 2
+"""Moments before and after a motion that its derivatives take."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -280,14 +282,15 @@ def _averaged(
     places = np.interp(moments, times, along)
     # Before, the car has gone at an even acceleration; after, it goes on at the last speed.
     ahead = 0.0 if stops else speeds[-1]
-    past = step * np.arange(half, 0, -1)
+    past = step * np.arange(half + _MORE, 0, -1)
     before = places[0] - past * np.maximum(speeds[0] - earlier * past / 2, 0.0)
-    after = places[-1] + ahead * step * np.arange(1, half + 1)
+    after = places[-1] + ahead * step * np.arange(1, half + _MORE + 1)
     whole = np.concatenate([before, places, after])
     sums = np.concatenate([[0.0], np.cumsum(whole)])
     width = 2 * half + 1
     mean = (sums[width:] - sums[:-width]) / width
+    # Derivatives at the ends are those between moments before and after.
     speed = np.gradient(mean, step)
-    acceleration = np.gradient(speed, step)
-    mean = np.maximum.accumulate(mean)
+    acceleration = np.gradient(speed, step)[_MORE:-_MORE]
+    mean, speed = np.maximum.accumulate(mean[_MORE:-_MORE]), speed[_MORE:-_MORE]
     return np.interp(along, mean, speed), np.interp(along, mean, acceleration)

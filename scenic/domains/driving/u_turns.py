@@ -7,6 +7,7 @@ import numpy as np
 
 from scenic.domains.driving.actions import RegulatedControlAction, SetReverseAction
 from scenic.domains.driving.elements import Lane
+from scenic.domains.driving.following import stopping_acceleration
 from scenic.domains.driving.lane_driving import lane_under
 from scenic.domains.driving.running_traffic import running_traffic
 from scenic.language.errors import InvalidScenarioError, SimulationError
@@ -20,7 +21,13 @@ FASTEST: Final = 3.0
 _TURNING: Final = 0.5
 """Change of curvature (1/m in a second) by steering while the car moves."""
 _BRAKING: Final = 1.5
-"""Deceleration (m/s^2) before the edge of the road."""
+"""Deceleration (m/s^2) by which the car begins to brake before the edge of the road."""
+_SPEEDING_UP: Final = 1.5
+"""Acceleration (m/s^2)."""
+_SETTLING: Final = 0.4
+"""Seconds in which it comes to the speed of the turn, about."""
+_JERK: Final = 5.0
+"""Change of the acceleration (m/s^3)."""
 _LOOK: Final = 8.0
 """Metres ahead that are looked at for the edge of the road."""
 _GRAIN: Final = 0.04
@@ -67,7 +74,9 @@ class UTurner:
         self._gear = 1.0
         self._curvature: float | None = None
         self._changes = 0
-        self._braked = False
+        self._acceleration = 0.0
+        self._stop: float | None = None
+        """Metres to the place at which the car is to stop, if it is."""
 
     def lane(self) -> Lane:
         """Return the lane of the other direction that is nearest to the car."""
@@ -95,9 +104,9 @@ class UTurner:
         """
         agent, simulation = self._agent, self._simulation
         speed = float(agent.speed)
-        if self._braked and speed < 0.02:
+        if self._stop is not None and speed < 0.02:
             self._gear = -self._gear
-            self._braked = False
+            self._stop, self._acceleration = None, 0.0
             self._changes += 1
             if self._changes > _MOST:
                 raise SimulationError(
@@ -106,22 +115,39 @@ class UTurner:
                 )
         if abs(self._left) < math.pi / 2:
             self._side = math.copysign(1.0, self._left)
-        # Where going forward ends the turn, the car reverses no farther.
-        self._braked |= self._gear < 0 and abs(self._left) < 0.9 * _HANDED_OVER
         lock = abs(simulation.curvature_of(agent, 1.0)) * _STEERING
         curvature = self._steered(self._side * self._gear * lock, speed)
-        free = self._free_distance(lock) - 1.5 * speed * simulation.timestep
-        self._braked |= free < _CLOSE
-        target_speed = 0.0 if self._braked else min(_SPEED, math.sqrt(2 * _BRAKING * free))
-        acceleration = min(max((target_speed - speed) / (2 * simulation.timestep), -2 * _BRAKING), 1.5)
-        if self._braked and speed < 0.3:
-            acceleration = -speed / simulation.timestep - 0.1
+        acceleration = self._sped(speed, self._free_distance(lock) - _CLOSE)
         pedal = simulation.pedal_for(agent, acceleration)
         steering = simulation.steering_for(agent, curvature)
         return (
             RegulatedControlAction(pedal, steering, steering, 1.0, 1.0, 1.0),
             SetReverseAction(self._gear < 0),
         )
+
+    def _sped(self, speed: float, free: float) -> float:
+        """The acceleration (m/s^2) of this step, with metres of room ahead: evenly up to the speed of the turn, and evenly to a stop."""
+        timestep = self._simulation.timestep
+        # What is decided now acts for a step, and braking begins evenly.
+        free -= speed * timestep
+        rising = max(0.0, self._acceleration + _BRAKING) / _JERK
+        way = rising * (speed + rising * (self._acceleration / 2 - _JERK * rising / 6))
+        after = max(0.0, speed + rising * (self._acceleration - _JERK * rising / 2))
+        braking_way = way + 2 * after * after / (3 * _BRAKING)
+        if self._stop is not None:
+            self._stop = min(self._stop - speed * timestep, free)
+        elif free <= braking_way:
+            self._stop = free
+        elif self._gear < 0 and abs(self._left) < 0.9 * _HANDED_OVER:
+            # Where going forward ends the turn, the car reverses no farther.
+            self._stop = braking_way
+        if self._stop is not None:
+            acceleration = stopping_acceleration(speed, self._stop, timestep)
+        else:
+            acceleration = min((_SPEED - speed) / _SETTLING, _SPEEDING_UP)
+        change = _JERK * timestep
+        self._acceleration = min(max(acceleration, self._acceleration - change), self._acceleration + change)
+        return self._acceleration
 
     def _steered(self, wanted: float, speed: float) -> float:
         """The curvature (1/m) of this step, towards one that is wanted; a car that stands may turn its wheels at will."""
