@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Any, Final, Protocol, Self, TypeVar
 
 from scenic.batch.portable import ClusterError, Portable
 from scenic.batch.upcoming import Upcoming
-from scenic.language.errors import UnsupportedError
-from scenic.language.extras import installation
+from scenic.language.extras import needing
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor, Future
@@ -147,12 +146,8 @@ class DaskCluster:
     """
 
     def __init__(self, address: str, *, label: str = "scenes") -> None:
-        try:
+        with needing("a Dask cluster needs the package distributed", "cluster"):
             import distributed  # optional, and slow to import
-        except ImportError as error:
-            raise UnsupportedError(
-                "a Dask cluster needs the package distributed", help=f"install it: {installation('cluster')}"
-            ) from error
         self._distributed: Any = distributed  # its functions have no types
         self._label = label
         self._address = address

@@ -3,7 +3,7 @@
 from types import ModuleType
 
 from scenic.language.errors import Located
-from scenic.language.extras import installation
+from scenic.language.extras import needing
 
 __all__ = ["MissingLibraryError", "require_pillow"]
 
@@ -16,11 +16,6 @@ class MissingLibraryError(Located):
 
 def require_pillow() -> ModuleType:
     """Return the library that writes images; raises ``MissingLibraryError`` with the way to get it."""
-    try:
+    with needing("images need the library Pillow, which is not installed", "view", kind=MissingLibraryError):
         import PIL.Image
-    except ImportError as error:
-        raise MissingLibraryError(
-            "images need the library Pillow, which is not installed",
-            help=f"install it: {installation('view')}",
-        ) from error
     return PIL.Image

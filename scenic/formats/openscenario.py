@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from scenic.dataclass import dataclass
 from scenic.formats.files import write
 from scenic.language.errors import UnsupportedError
-from scenic.language.extras import installation
+from scenic.language.extras import needing
 from scenic.runtime.values.values import Orientation, Vector
 
 __all__ = [
@@ -53,13 +53,9 @@ _CATEGORIES: Final = (
 
 def openscenario_support() -> Any:
     """Return the module ``scenariogeneration.xosc``; raises `UnsupportedError` without it. It is met here alone."""
-    try:
+    words = "OpenSCENARIO files need the package scenariogeneration"
+    with needing(words, "openscenario", instead="; or write JSON Lines"):
         from scenariogeneration import xosc  # optional
-    except ImportError as error:
-        raise UnsupportedError(
-            "OpenSCENARIO files need the package scenariogeneration",
-            help=f"install it: {installation('openscenario')}; or write JSON Lines",
-        ) from error
     return xosc
 
 

@@ -11,8 +11,7 @@ from typing import Any, Final
 
 from scenic.formats.files import OutputError, Waiting, refusing, writing
 from scenic.formats.json_lines import number, real
-from scenic.language.errors import UnsupportedError
-from scenic.language.extras import installation
+from scenic.language.extras import needing
 
 __all__ = ["GROUP", "KEY", "ParquetFile", "parquet_about", "parquet_steps", "parquet_support"]
 
@@ -28,14 +27,9 @@ _TURNS: Final = ("qx", "qy", "qz", "qw")
 
 def parquet_support() -> tuple[Any, Any]:
     """Return the modules ``pyarrow`` and ``pyarrow.parquet``; raises `UnsupportedError` without them. They have no types, hence `Any`."""
-    try:
+    with needing("Parquet files need the package pyarrow", "parquet", instead="; or write JSON Lines"):
         import pyarrow
         import pyarrow.parquet  # optional, and slow to import
-    except ImportError as error:
-        raise UnsupportedError(
-            "Parquet files need the package pyarrow",
-            help=f"install it: {installation('parquet')}; or write JSON Lines",
-        ) from error
     return pyarrow, pyarrow.parquet
 
 

@@ -1,10 +1,13 @@
 """The extras of the package: what each is for, which modules it brings, and the command that installs it."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from types import MappingProxyType
 from typing import Final
 
 from scenic.dataclass import dataclass
+from scenic.language.errors import Located, UnsupportedError
+from scenic.language.spans import Span
 
 __all__ = ["EXTRAS", "Extra", "installation"]
 
@@ -50,3 +53,28 @@ EXTRAS: Final[Mapping[str, Extra]] = MappingProxyType(
 def installation(extra: str) -> str:
     """Return the command that installs an extra; quoted, since shells read brackets as patterns."""
     return f"pip install 'scenic-lang[{EXTRAS[extra].name}]'"
+
+
+@contextmanager
+def needing(
+    words: str,
+    extra: str,
+    *,
+    instead: str = "",
+    kind: type[Located] = UnsupportedError,
+    span: Span | None = None,
+) -> Iterator[None]:
+    """Import packages of an extra within a ``with`` block.
+
+    Args:
+        words: the message where a package is missing.
+        extra: the extra that brings it.
+        instead: what helps beside installing it.
+        kind: the error that is raised.
+        span: the place in the program that needs the package.
+
+    """
+    try:
+        yield
+    except ImportError as error:
+        raise kind(words, help=f"install it: {installation(extra)}{instead}", span=span) from error

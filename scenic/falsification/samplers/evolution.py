@@ -10,7 +10,7 @@ import numpy as np
 
 from scenic.falsification.samplers.sampler import SamplerError, options
 from scenic.falsification.space import Floats, Space
-from scenic.language.extras import installation
+from scenic.language.extras import needing
 from scenic.runtime.python.random_state import preserved, seed_globals
 
 __all__ = ["Evolution"]
@@ -25,15 +25,12 @@ class Evolution:
     """
 
     def __init__(self, space: Space, seed: int, given: object = None) -> None:
-        try:
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore")
-                import cma
-        except ImportError:
-            raise SamplerError(
-                "the sampler 'cma' needs the package `cma`",
-                help=f"install it: {installation('falsify')}",
-            ) from None
+        with (
+            needing("the sampler 'cma' needs the package `cma`", "falsify", kind=SamplerError),
+            warnings.catch_warnings(),
+        ):
+            warnings.simplefilter("ignore")
+            import cma
         settings = options(given, {"sigma": 0.3, "popsize": None}, "cma")
         self._cma: Any = cma
         self._sigma = float(settings["sigma"])

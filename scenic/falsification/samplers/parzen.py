@@ -7,7 +7,7 @@ import numpy as np
 
 from scenic.falsification.samplers.sampler import SamplerError, options
 from scenic.falsification.space import Floats, Space
-from scenic.language.extras import installation
+from scenic.language.extras import needing
 
 __all__ = ["Parzen"]
 
@@ -64,12 +64,7 @@ class Parzen:
 
 
 def _library() -> Any:
-    try:
+    with needing("the sampler 'tpe' needs the package `optuna`", "falsify", kind=SamplerError):
         import optuna
-    except ImportError:
-        raise SamplerError(
-            "the sampler 'tpe' needs the package `optuna`",
-            help=f"install it: {installation('falsify')}",
-        ) from None
     optuna.logging.set_verbosity(optuna.logging.ERROR)
     return optuna

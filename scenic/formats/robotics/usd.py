@@ -20,7 +20,7 @@ from scenic.formats.robotics.solids import Solid, identifiers, solids_of
 from scenic.formats.scene_cameras import Viewpoint
 from scenic.formats.scene_protocols import Scene
 from scenic.formats.scenery import scenery_of
-from scenic.language.extras import installation
+from scenic.language.extras import needing
 
 __all__ = ["require_usd", "usd", "usd_file"]
 
@@ -35,12 +35,8 @@ _ROUGHNESS: Final = 0.8
 
 def require_usd() -> None:
     """Raise `MissingLibraryError` without the package ``usd-core``."""
-    try:
+    with needing("OpenUSD files need the package usd-core", "usd", kind=MissingLibraryError):
         import pxr.Usd  # noqa: F401 - optional
-    except ImportError as error:
-        raise MissingLibraryError(
-            "OpenUSD files need the package usd-core", help=f"install it: {installation('usd')}"
-        ) from error
 
 
 def usd(scene: Scene, name: str) -> dict[str, bytes]:

@@ -6,8 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from scenic.language.errors import UnsupportedError
-from scenic.language.extras import installation
+from scenic.language.extras import needing
 
 __all__ = ["draw_without_window", "library", "quietly"]
 
@@ -21,13 +20,9 @@ def draw_without_window() -> None:
 def library() -> Any:
     """Return the module ``mujoco``; raises `UnsupportedError` without it. It has no types, hence `Any`."""
     draw_without_window()
-    try:
+    words = "the MuJoCo simulator needs the package mujoco-core"
+    with needing(words, "mujoco", instead="; or simulate with --simulator kinematic"):
         import mujoco  # optional, and slow to import
-    except ImportError as error:
-        raise UnsupportedError(
-            "the MuJoCo simulator needs the package mujoco-core",
-            help=f"install it: {installation('mujoco')}; or simulate with --simulator kinematic",
-        ) from error
     return mujoco
 
 
