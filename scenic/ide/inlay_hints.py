@@ -7,6 +7,7 @@ from types import MappingProxyType
 from typing import Final
 
 from scenic.compiler import tree as scenic
+from scenic.compiler.semantics.model import Model
 from scenic.compiler.traversal import walk
 from scenic.dataclass import dataclass
 from scenic.ide.places import span_of
@@ -17,6 +18,7 @@ from scenic.language.operators import OPERATORS, Operand
 from scenic.language.properties import CLASSES, properties_of
 from scenic.language.spans import Span
 from scenic.language.specifiers import SPECIFIERS
+from scenic.project.index import Project
 
 __all__ = ["Hint", "HintKind", "hints"]
 
@@ -57,14 +59,19 @@ class Hint:
     tooltip: str
 
 
-def hints(snapshot: Snapshot, within: Span | None = None, remarks: Remarks | None = None) -> tuple[Hint, ...]:
+def hints(
+    project: Project, snapshot: Snapshot, within: Span | None = None, remarks: Remarks | None = None
+) -> tuple[Hint, ...]:
     """The hints for a document, or for a part of it, in order of place; ``remarks`` are those of its last run."""
     every = snapshot.derived(
         "hints",
         lambda: tuple(
-            sorted([*_find(snapshot), *_ranges(snapshot, remarks)], key=lambda each: (each.line, each.column))
+            sorted(
+                [*_find(snapshot, snapshot.model(project)), *_ranges(snapshot, remarks)],
+                key=lambda each: (each.line, each.column),
+            )
         ),
-        stamp=id(remarks),
+        stamp=(id(remarks), project.state_beside(snapshot.filename)),
     )
     if within is None:
         return every
@@ -72,7 +79,7 @@ def hints(snapshot: Snapshot, within: Span | None = None, remarks: Remarks | Non
     return tuple(each for each in every if start <= (each.line, each.column) <= end)
 
 
-def _find(snapshot: Snapshot) -> Iterator[Hint]:
+def _find(snapshot: Snapshot, model: Model) -> Iterator[Hint]:
     angles = {
         name for cls in CLASSES for name, declaration in properties_of(cls).items() if declaration.angle
     }
@@ -90,7 +97,7 @@ def _find(snapshot: Snapshot) -> Iterator[Hint]:
         elif isinstance(node, scenic.Operation) and node.operator in OPERATORS:
             yield from _operands(snapshot, node, OPERATORS[node.operator].operands, node.operands)
         elif isinstance(node, ast.Call):
-            yield from _parameters(snapshot, node)
+            yield from _parameters(snapshot, model, node)
 
 
 def _operands(
@@ -132,14 +139,12 @@ def _unit_of_property(
         yield _after(snapshot, value, f" {unit}", HintKind.UNIT, f"`{name}` is measured in {unit}")
 
 
-def _parameters(snapshot: Snapshot, node: ast.Call) -> Iterator[Hint]:
+def _parameters(snapshot: Snapshot, model: Model, node: ast.Call) -> Iterator[Hint]:
     """Names of parameters before plain values that are given by position to what the language provides."""
-    if not isinstance(node.func, ast.Name) or node.func.id not in NAMES:
+    function = NAMES.get(model.likely_provided(node.func) or "")
+    if function is None:
         return
-    reference = snapshot.resolution.references.get(node.func)
-    if reference is not None and reference.binding is not None:
-        return
-    parameters = NAMES[node.func.id].parameters
+    parameters = function.parameters
     if len(parameters) < 2 or "..." in parameters:
         return
     for name, argument in zip(parameters, node.args, strict=False):
@@ -147,7 +152,7 @@ def _parameters(snapshot: Snapshot, node: ast.Call) -> Iterator[Hint]:
             return
         if name.isidentifier() and not isinstance(argument, ast.Name | ast.Attribute):
             span = span_of(snapshot, argument)
-            yield Hint(span.line, span.column, f"{name}: ", HintKind.PARAMETER, NAMES[node.func.id].signature)
+            yield Hint(span.line, span.column, f"{name}: ", HintKind.PARAMETER, function.signature)
 
 
 def _priorities(snapshot: Snapshot, node: scenic.New) -> Iterator[Hint]:

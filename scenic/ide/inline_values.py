@@ -10,6 +10,8 @@ from typing import Final
 
 from scenic.compiler.lowering.instances import instance_name, is_kept
 from scenic.compiler.scopes import BindingKind, Scope
+from scenic.compiler.semantics.model import Model
+from scenic.compiler.semantics.modules import Modules
 from scenic.dataclass import dataclass
 from scenic.ide.snapshot import Snapshot
 from scenic.language.generated_code import PRELUDE
@@ -32,11 +34,13 @@ class InlineValue:
     expression: str | None = None
 
 
-def inline_values(snapshot: Snapshot, span: Span, stopped: tuple[int, int]) -> tuple[InlineValue, ...]:
+def inline_values(
+    modules: Modules, snapshot: Snapshot, span: Span, stopped: tuple[int, int]
+) -> tuple[InlineValue, ...]:
     """The names in a stretch of the text that have a value where the program has stopped: each but once in a line."""
     around = tuple(snapshot.scope_at(*stopped).ancestors())
     values_by_place: dict[tuple[int, str], InlineValue] = {}
-    for node, value in _values(snapshot, around):
+    for node, value in _values(snapshot.model(modules), around):
         place = snapshot.source.span(node)
         if span.line <= place.line <= min(span.end_line, stopped[0]):
             earlier = values_by_place.get((place.line, node.id))
@@ -45,11 +49,9 @@ def inline_values(snapshot: Snapshot, span: Span, stopped: tuple[int, int]) -> t
     return tuple(sorted(values_by_place.values(), key=lambda each: each.span))
 
 
-def _values(snapshot: Snapshot, around: tuple[Scope, ...]) -> Iterator[tuple[ast.Name, str | None]]:
-    for node, reference in snapshot.resolution.references.items():
-        if not isinstance(node, ast.Name):
-            continue
-        binding = reference.binding
+def _values(model: Model, around: tuple[Scope, ...]) -> Iterator[tuple[ast.Name, str | None]]:
+    for node in model.names():
+        binding = model.binding(node)
         if node.id in TRACKED:
             yield node, f"{PRELUDE}.{node.id}"
         elif binding is not None and binding.scope in around and binding.kinds & _SHOWN:

@@ -10,6 +10,8 @@ from itertools import pairwise
 from typing import Any, Final
 
 from scenic.compiler import tree as scenic
+from scenic.compiler.semantics.model import Model
+from scenic.compiler.semantics.modules import Modules
 from scenic.compiler.traversal import parts, walk
 from scenic.dataclass import dataclass
 from scenic.ide.snapshot import Snapshot
@@ -36,7 +38,7 @@ class Refactoring:
     edits: tuple[Edit, ...]
 
 
-def extract_variable(snapshot: Snapshot, span: Span) -> Refactoring | None:
+def extract_variable(modules: Modules, snapshot: Snapshot, span: Span) -> Refactoring | None:
     """Give the expression that is selected a name, in a line before its statement."""
     if snapshot.parsed.diagnostics or (span.line, span.column) == (span.end_line, span.end_column):
         return None
@@ -52,7 +54,9 @@ def extract_variable(snapshot: Snapshot, span: Span) -> Refactoring | None:
         expression, ast.JoinedStr | ast.Starred
     ):
         return None
-    if not isinstance(getattr(expression, "ctx", ast.Load()), ast.Load) or _own_names(snapshot, expression):
+    if not isinstance(getattr(expression, "ctx", ast.Load()), ast.Load) or _own_names(
+        snapshot.model(modules), expression
+    ):
         return None
     line = snapshot.source.line(statement.lineno)
     indentation = line[: len(line) - len(line.lstrip())]
@@ -67,22 +71,17 @@ def extract_variable(snapshot: Snapshot, span: Span) -> Refactoring | None:
     return Refactoring(f"Extract into a variable `{name}`", edits)
 
 
-def inline_variable(snapshot: Snapshot, line: int, column: int) -> Refactoring | None:
+def inline_variable(modules: Modules, snapshot: Snapshot, line: int, column: int) -> Refactoring | None:
     """Put the value of the variable at a place where it is used, and remove the variable: one that is used just once."""
     node: Any = snapshot.path_to(line, column)[-1]
     if snapshot.parsed.diagnostics or not isinstance(node, ast.Name):
         return None
-    resolution = snapshot.resolution
-    if resolution.reflective or resolution.wildcard:
+    model = snapshot.model(modules)
+    binding = model.binding(node)
+    if binding is None or len(binding.sites) != 1 or model.resolution.reflective or not model.stays(node):
         return None
-    reference = resolution.references.get(node)
-    binding = None if reference is None else reference.binding
-    if binding is None or len(binding.sites) != 1:
-        return None
-    uses = [
-        each.node
-        for each in resolution.references.values()
-        if each.binding is binding and each.node is not binding.sites[0]
+    uses: list[Any] = [
+        each for each in model.names() if model.binding(each) is binding and each is not binding.sites[0]
     ]
     if len(uses) != 1:
         return None
@@ -110,34 +109,19 @@ def _path_of(snapshot: Snapshot, span: Span) -> list[ast.AST]:
     while True:
         if isinstance(path[-1], ast.expr) and snapshot.source.span(path[-1]) == span:
             return path
-        inner = next(
-            (child for child in parts(path[-1]) if _holds(snapshot.source.span(child), span)),
-            None,
-        )
+        inner = next((child for child in parts(path[-1]) if snapshot.source.span(child).contains(span)), None)
         if inner is None:
             return []
         path.append(inner)
 
 
-def _holds(outer: Span, inner: Span) -> bool:
-    return (outer.line, outer.column) <= (inner.line, inner.column) and (
-        inner.end_line,
-        inner.end_column,
-    ) <= (
-        outer.end_line,
-        outer.end_column,
-    )
-
-
-def _own_names(snapshot: Snapshot, expression: ast.AST) -> bool:
+def _own_names(model: Model, expression: ast.AST) -> bool:
     """Return whether an expression reads ``self`` of the object that a specifier is about, or binds a name."""
     for node in walk(expression):
         if isinstance(node, ast.NamedExpr):
             return True
-        if isinstance(node, ast.Name) and node.id == "self":
-            reference = snapshot.resolution.references.get(node)
-            if reference is None or reference.binding is None:
-                return True
+        if isinstance(node, ast.Name) and node.id == "self" and model.binding(node) is None:
+            return True
     return False
 
 

@@ -13,12 +13,15 @@ from scenic.compiler.lexer import lex
 from scenic.compiler.parser import ParseResult, deep_recursion, parse_lexed
 from scenic.compiler.resolver import bind
 from scenic.compiler.scopes import Binding, BindingKind, Resolution, Scope, ScopeKind
+from scenic.compiler.semantics.model import Model
+from scenic.compiler.semantics.modules import Modules
 from scenic.compiler.surroundings import SurroundingsOf
 from scenic.compiler.tokens import NAME, Tokens
 from scenic.compiler.traversal import parts
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.source import Source
 from scenic.language.spans import Span
+from scenic.project.modules import read_module
 
 __all__ = ["Cancelled", "PythonSnapshot", "Snapshot"]
 
@@ -74,6 +77,10 @@ class Snapshot:
     def resolution(self) -> Resolution:
         """The scopes and what each name in them means."""
         return self._once("resolution", self._resolve)
+
+    def model(self, modules: Modules) -> Model:
+        """Return the semantic model of this version, which knows other modules by ``modules``."""
+        return Model(read_module(self.source, tree=self.tree, resolution=self.resolution), modules)
 
     def derived(self, key: str, make: Callable[[], _T], *, stamp: object = None) -> _T:
         """Return a value that a feature derives from this version, computed on first use and kept.

@@ -7,6 +7,7 @@ from scenic.ide.refactoring import extract_variable, inline_variable
 from scenic.ide.snapshot import Snapshot
 from scenic.language.diagnostics import Fix
 from scenic.language.spans import Span
+from scenic.project.index import Project
 
 
 def extracted(marked: str) -> str | None:
@@ -16,14 +17,14 @@ def extracted(marked: str) -> str | None:
     places = []
     for text in (before, before + chosen):
         places += [text.count("\n") + 1, len(text) - text.rfind("\n") - 1]
-    found = extract_variable(snapshot, Span(*places))
+    found = extract_variable(Project(), snapshot, Span(*places))
     return None if found is None else apply_fixes(snapshot.text, [Fix(found.title, found.edits)])[0]
 
 
 def inlined(marked: str) -> str | None:
     before, after = marked.split("|")
     snapshot = Snapshot(before + after, "f")
-    found = inline_variable(snapshot, before.count("\n") + 1, len(before) - before.rfind("\n") - 1)
+    found = inline_variable(Project(), snapshot, before.count("\n") + 1, len(before) - before.rfind("\n") - 1)
     return None if found is None else apply_fixes(snapshot.text, [Fix(found.title, found.edits)])[0]
 
 
@@ -78,3 +79,9 @@ def test_a_value_takes_the_place_of_its_name() -> None:
 )
 def test_where_a_value_stays(marked: str) -> None:
     assert inlined(marked) is None
+
+
+def test_a_variable_is_inlined_beside_names_that_a_known_module_brings() -> None:
+    program = "from math import *\nwi|de = Range(1, 2)\nego = new Object at (wide, 3)\n"
+    assert inlined(program) == "from math import *\nego = new Object at (Range(1, 2), 3)\n"
+    assert inlined("p|i = Range(1, 2)\nego = new Object at (pi, 3)\nfrom math import *\n") is None

@@ -191,6 +191,10 @@ class Names:
         """Return all nodes of a class, with their scopes."""
         return self.resolution.nodes(cls)
 
+    def names(self) -> Iterator[ast.Name]:
+        """Yield all names of the program, each where it stands."""
+        return (node for node in self.resolution.references if isinstance(node, ast.Name))
+
     def nodes_around(self, node: ast.AST, cls: type[ast.AST]) -> Iterator[Any]:
         """Yield the nodes of a class in the statement of the top level that a node stands in."""
         nodes, starts = self.nodes(cls), self._starts

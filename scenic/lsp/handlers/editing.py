@@ -68,9 +68,14 @@ def _at_place(
         if is_old(found):
             yield from _of_document(session, document, _QUICK_FIX, "Convert this program to Scenic 3")
     if _wanted(_EXTRACT, only):
-        yield from _refactoring(session, document, _EXTRACT, extract_variable(document.snapshot, span))
+        yield from _refactoring(
+            session,
+            document,
+            _EXTRACT,
+            extract_variable(session.project_with(document), document.snapshot, span),
+        )
     if _wanted(_INLINE, only):
-        inlining = inline_variable(document.snapshot, span.line, span.column)
+        inlining = inline_variable(session.project_with(document), document.snapshot, span.line, span.column)
         yield from _refactoring(session, document, _INLINE, inlining)
 
 

@@ -37,7 +37,10 @@ def _inlay_hints(session: Session, params: types.InlayHintParams) -> list[types.
         )
         for document in session.document(params.text_document.uri).programs
         for hint in hints(
-            document.snapshot, document.lines.from_range(params.range), session.remarks.get(document.uri)
+            session.project_with(document),
+            document.snapshot,
+            document.lines.from_range(params.range),
+            session.remarks.get(document.uri),
         )
     ]
 
@@ -60,7 +63,9 @@ def _inline_values(session: Session, params: types.InlineValueParams) -> list[ty
         )
         if each.expression is None
         else types.InlineValueEvaluatableExpression(lines.to_range(each.span), each.expression)
-        for each in inline_values(document.snapshot, lines.from_range(params.range), stop)
+        for each in inline_values(
+            session.project_with(document), document.snapshot, lines.from_range(params.range), stop
+        )
     ]
 
 
