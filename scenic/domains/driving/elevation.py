@@ -257,11 +257,13 @@ class _Lines:
         import shapely
 
         counts = np.array([len(rows) for rows in samples], dtype=np.intp)
-        self._s, self._x, self._y, self._heading = np.concatenate(samples).T
+        self._s, x, y, headings = np.concatenate(samples).T
+        self._points = np.array([x, y])
+        self._directions = np.array([np.cos(headings), np.sin(headings)])
         self._first = np.cumsum(counts) - counts
         self._last = self._first + counts - 2  # the last segment of each road
         self._lines = np.array([shapely.LineString(rows[:, 1:3]) for rows in samples], dtype=object)
-        steps = np.hypot(np.diff(self._x, append=0.0), np.diff(self._y, append=0.0))
+        steps = np.hypot(np.diff(x, append=0.0), np.diff(y, append=0.0))
         chords = [
             np.concatenate([[0.0], np.cumsum(steps[first : first + count - 1])])
             for first, count in zip(self._first, counts, strict=True)
@@ -278,35 +280,63 @@ class _Lines:
         import shapely
 
         along = shapely.line_locate_point(self._lines[roads], shapely.points(places))
-        segments = np.searchsorted(self._keys, roads * _APART + along, side="right") - 1
-        index = np.clip(segments, self._first[roads], self._last[roads])
-        length = self._s[index + 1] - self._s[index]
-        chord = np.maximum(self._chord[index + 1] - self._chord[index], 1e-12)
-        share = (along - self._chord[index]) / chord
+        first, last = self._first[roads], self._last[roads]
+        index = np.searchsorted(self._keys, roads * _APART + along, side="right") - 1
+        index = np.minimum(np.maximum(index, first), last)
+        chords, length = self._chord[index], self._s[index + 1] - self._s[index]
+        share = (along - chords) / np.maximum(self._chord[index + 1] - chords, 1e-12)
         # A place beside a bend may belong to the neighbour of the nearest segment: its cubic goes on a little.
-        least = np.where(index == self._first[roads], 0.0, -0.5)
-        most = np.where(index == self._last[roads], 1.0, 1.5)
-        curve = self._curve(index, length)
+        least = np.where(index == first, 0.0, -0.5)
+        most = np.where(index == last, 1.0, 1.5)
+        curve = _Hermite(
+            self._points[:, index],
+            self._points[:, index + 1],
+            length * self._directions[:, index],
+            length * self._directions[:, index + 1],
+        )
+        goals = places.T
         for _ in range(_ROUNDS):
-            (px, py), (dx, dy), (ddx, ddy) = _hermite(curve, share)
-            off_x, off_y = px - places[:, 0], py - places[:, 1]
-            square = dx * dx + dy * dy
-            slope = square + off_x * ddx + off_y * ddy
-            share = share - (off_x * dx + off_y * dy) / np.maximum(slope, _CURLED * square)
-            share = np.clip(share, least, most)
-        (px, py), (dx, dy), (ddx, ddy) = _hermite(curve, share)
+            derivatives, seconds = curve.derivatives(share)
+            off = curve.points(share) - goals
+            square = _dot(derivatives, derivatives)
+            across = off * seconds
+            slope = square + across[0] + across[1]
+            share = share - _dot(off, derivatives) / np.maximum(slope, _CURLED * square)
+            share = np.minimum(np.maximum(share, least), most)
+        (px, py), ((dx, dy), (ddx, ddy)) = curve.points(share), curve.derivatives(share)
         speed = np.hypot(dx, dy)
-        left = (dx * (places[:, 1] - py) - dy * (places[:, 0] - px)) / speed
+        left = (dx * (goals[1] - py) - dy * (goals[0] - px)) / speed
         bend = (dx * ddy - dy * ddx) / speed**3
         return self._s[index] + share * length, left, np.arctan2(dy, dx), bend
 
-    def _curve(self, index: Indices, length: Floats) -> tuple[tuple[Floats, ...], tuple[Floats, ...]]:
-        """Ends and derivatives of segments, in x and in y."""
-        first, last = self._heading[index], self._heading[index + 1]
-        return (
-            (self._x[index], self._x[index + 1], length * np.cos(first), length * np.cos(last)),
-            (self._y[index], self._y[index + 1], length * np.sin(first), length * np.sin(last)),
-        )
+
+def _dot(one: Floats, other: Floats) -> Floats:
+    """Return the dot products ``(n,)`` of columns of two arrays ``(2, n)``."""
+    products = one * other
+    result: Floats = products[0] + products[1]
+    return result
+
+
+class _Hermite:
+    """Cubic curves from points ``(2, n)`` to others, with derivatives ``(2, n)`` at their ends."""
+
+    __slots__ = ("_cubic", "_first", "_point", "_square", "_twice")
+
+    def __init__(self, begin: Floats, end: Floats, first: Floats, last: Floats) -> None:
+        self._point, self._first = begin, first
+        self._square = 3 * (end - begin) - 2 * first - last
+        self._twice = 2 * self._square
+        self._cubic = 2 * (begin - end) + first + last
+
+    def points(self, share: Floats) -> Floats:
+        """Return the points ``(2, n)`` at shares ``(n,)`` of the curves."""
+        result: Floats = self._point + share * (self._first + share * (self._square + share * self._cubic))
+        return result
+
+    def derivatives(self, share: Floats) -> tuple[Floats, Floats]:
+        """Return first and second derivatives ``(2, n)``; see `points`."""
+        first: Floats = self._first + share * (self._twice + 3 * share * self._cubic)
+        return first, self._twice + 6 * share * self._cubic
 
 
 def frames_on(gradients: Floats, headings: Floats) -> Floats:
@@ -315,15 +345,3 @@ def frames_on(gradients: Floats, headings: Floats) -> Floats:
     pitch = np.arctan(gradients[:, 1] * cos - gradients[:, 0] * sin)
     roll = -np.arctan((gradients[:, 0] * cos + gradients[:, 1] * sin) * np.cos(pitch))
     return quaternions.from_euler(headings, pitch, roll)
-
-
-def _hermite(curve: Any, share: Floats) -> tuple[Any, Any, Any]:
-    """Places, first and second derivatives of cubics given by their ends and the derivatives there."""
-    u = share
-    places, firsts, seconds = [], [], []
-    for p, q, v, w in curve:
-        c, d = 3 * (q - p) - 2 * v - w, 2 * (p - q) + v + w
-        places.append(p + u * (v + u * (c + u * d)))
-        firsts.append(v + u * (2 * c + 3 * u * d))
-        seconds.append(2 * c + 6 * u * d)
-    return places, firsts, seconds

@@ -137,12 +137,26 @@ class Levels:
             return np.zeros(len(places), dtype=np.bool_)
         return np.asarray(shapely.intersects_xy(area, places[:, 0], places[:, 1]), dtype=np.bool_)
 
-    def _at(self, points: Floats) -> tuple[Indices, Indices, Floats]:
-        """Pairs of points ``(n, 3)`` and roads that hold them as seen from above, and by how much each road misses the point."""
+    def _under(self, points: Floats) -> tuple[Indices, Indices]:
+        """Pairs of points ``(n, 3)``, in their order, and roads that hold them as seen from above."""
         import shapely
 
-        owner, area = self._tree.query(shapely.points(points[:, :2]), predicate="intersects")
-        roads = self._roads[area]
+        # Boxes first: prepared areas answer for all pairs at once much faster than the tree asks them one by one.
+        owner, area = self._tree.query(shapely.points(points[:, :2]))
+        areas, places = self._prepared[area], points[owner]
+        inside = shapely.intersects_xy(areas, places[:, 0], places[:, 1])
+        return owner[inside], self._roads[area[inside]]
+
+    @cached_property
+    def _prepared(self) -> Any:
+        import shapely
+
+        shapely.prepare(self._polygons)
+        return self._polygons
+
+    def _at(self, points: Floats) -> tuple[Indices, Indices, Floats]:
+        """Pairs of points ``(n, 3)`` and roads that hold them as seen from above, and by how much each road misses the point."""
+        owner, roads = self._under(points)
         gaps = np.abs(points[owner, 2] - self.elevation.heights(roads, points[owner, :2]))
         return owner, roads, gaps
 
@@ -165,18 +179,16 @@ class Levels:
 
     def settled(self, points: Floats, headings: Floats) -> tuple[Floats, Floats]:
         """`heights` and `frames` at once: heights ``(n,)`` and orientations ``(n, 4)``."""
-        import shapely
-
-        owner, area = self._tree.query(shapely.points(points[:, :2]), predicate="intersects")
-        roads = self._roads[area]
+        owner, roads = self._under(points)
         above, gradients = self.elevation.heights_and_gradients(roads, points[owner, :2])
-        order = np.lexsort((np.abs(points[owner, 2] - above), owner))
-        first = order[np.flatnonzero(np.diff(owner[order], prepend=-1))]
-        there = owner[first]
+        if (owner[1:] == owner[:-1]).any():
+            order = np.lexsort((np.abs(points[owner, 2] - above), owner))
+            first = order[np.flatnonzero(np.diff(owner[order], prepend=-1))]
+            owner, above, gradients = owner[first], above[first], gradients[first]
         heights = np.full(len(points), np.nan)
-        heights[there] = above[first]
+        heights[owner] = above
         slopes = np.zeros((len(points), 2))
-        slopes[there] = gradients[first]
+        slopes[owner] = gradients
         return heights, frames_on(slopes, headings)
 
     def _nearest(self, points: Floats) -> tuple[Indices, Indices]:
