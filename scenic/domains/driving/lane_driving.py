@@ -161,8 +161,12 @@ class LaneDriver(Driver):
                 junctions=junctions,
                 near=self._near,
             )
+        self._due = self._next_due()
+
+    def _next_due(self) -> float:
+        """Metres along the path from which on the next choice is due."""
         speed = max(self._agent.speed, min(self._target, 40.0))
-        self._due = plan.path.length - plan.reserve(speed, self.comfort.deceleration)
+        return self._plan.path.length - self._plan.reserve(speed, self.comfort.deceleration)
 
     def _join_plan(self) -> bool:
         """Bend the path of the plan so that the car joins it; return false if another plan has been taken instead."""
@@ -205,8 +209,7 @@ class LaneDriver(Driver):
         while not plan.is_complete and (not self._path.along or self._path.along[self._index] > self._due):
             if not self._backward:
                 return True
-            plan.choose(plan.choices[0])
-            self._cover()
+            LaneDriver.choose(self, plan.choices[0])
         return False
 
     @property
@@ -216,7 +219,12 @@ class LaneDriver(Driver):
 
     def choose(self, choice: Any) -> None:
         """Go on by one of the `choices`."""
-        self._plan.choose(choice)
+        plan = self._plan
+        plan.choose(choice)
+        if self._path is plan.path and not plan.is_complete:
+            self._due = self._next_due()
+            if self._path.along[self._index] > self._due:
+                return  # speeds are planned once the last choice of this step has been made
         self._cover()
 
     def _take_up(self) -> None:

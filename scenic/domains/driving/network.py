@@ -1,6 +1,6 @@
 """Road networks: all elements of a map, and which of them are where (section 2.7 of the driving specification)."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import cached_property
 from typing import Any
 
@@ -147,9 +147,28 @@ class RoadNetwork(Frozen):
         limit: float | None = lane.speedLimitAt(along)
         return limit
 
-    def crossings_near(self, element: NetworkElement) -> tuple[PedestrianCrossing, ...]:
-        """Return the pedestrian crossings that touch an element."""
-        return tuple(crossing for crossing in self.crossings if crossing.polygon.intersects(element.polygon))
+    def crossings_along(self, lane: Lane) -> tuple[tuple[PedestrianCrossing, float, float], ...]:
+        """Return the pedestrian crossings on a lane, with metres along its centerline to their near and their far edge."""
+        crossings = self._crossings_along.get(lane.uid)
+        if crossings is None:
+            crossings = self._crossings_along[lane.uid] = tuple(self._crossed_by(lane))
+        return crossings
+
+    @cached_property
+    def _crossings_along(self) -> dict[str, tuple[tuple[PedestrianCrossing, float, float], ...]]:
+        return {}
+
+    def _crossed_by(self, lane: Lane) -> Iterable[tuple[PedestrianCrossing, float, float]]:
+        import shapely
+
+        line = shapely.LineString(lane.line)
+        for crossing in self.crossings:
+            if not crossing.polygon.intersects(lane.polygon):
+                continue
+            part = line.intersection(crossing.polygon)
+            if not part.is_empty:
+                places = [line.project(shapely.Point(place)) for place in shapely.get_coordinates(part)]
+                yield crossing, min(places), max(places)
 
     # Regions
 

@@ -1,6 +1,7 @@
 """Drivers that obey the rules of the road: speed limits, lights, signs, priority, pedestrians on crossings, gaps."""
 
 import math
+from bisect import bisect_right
 from collections.abc import Iterable
 from itertools import pairwise
 from typing import Any, Final
@@ -12,6 +13,7 @@ from scenic.domains.driving.car_following import Gap, following_acceleration
 from scenic.domains.driving.elements import Lane, Maneuver
 from scenic.domains.driving.lane_driving import LaneDriver
 from scenic.domains.driving.narrow_lanes import ways_after
+from scenic.domains.driving.paths import Path
 from scenic.domains.driving.planning import MotionPlan
 from scenic.domains.driving.right_of_way import Claim
 from scenic.domains.driving.speed_limits import limits_along
@@ -144,18 +146,33 @@ class RulesDriver(LaneDriver):
         self._find_halts()
         if "speed_limits" in self._ignored:
             return None
-        along = np.array(path.along)
-        limits = np.full(len(along), np.inf)
-        last_limit = _UNLIMITED
-        marks = [*path.lanes, (len(along), None)]
-        for (begin, lane), (end, _) in pairwise(marks):
-            if end <= begin:
+        # Behind the car nobody looks at limits.
+        begin = self._index if path is self._path else 0
+        first = max(0, bisect_right(path.lanes, begin, key=_first_point) - 1)
+        count = len(path.along)
+        limits = np.full(count, np.inf)
+        last_limit = self._limit_before(path, first)
+        marks = [*path.lanes[first:], (count, None)]
+        for (start, lane), (end, _) in pairwise(marks):
+            if end <= start:
                 continue
-            lane_limits = limits_along(lane.speedLimitRanges, along[begin:end] - along[begin])
-            lane_limits = np.where(np.isfinite(lane_limits), lane_limits, last_limit)
-            limits[begin:end] = lane_limits
-            last_limit = float(lane_limits[-1]) if len(lane_limits) else last_limit
+            lane_limits = limits_along(lane.speedLimitRanges, np.array(path.along[start:end]) - path.along[start])
+            unlimited = ~np.isfinite(lane_limits)
+            lane_limits[unlimited] = last_limit
+            limits[start:end] = lane_limits
+            last_limit = float(lane_limits[-1])
         return limits
+
+    def _limit_before(self, path: Path, number: int) -> float:
+        """Return the limit that holds at the end of the lanes before one of a path, where that has none."""
+        for before in range(number - 1, -1, -1):
+            start, end = path.lanes[before][0], path.lanes[before + 1][0]
+            if end > start:
+                ranges = path.lanes[before][1].speedLimitRanges
+                limit = float(limits_along(ranges, np.array([path.along[end - 1] - path.along[start]]))[0])
+                if math.isfinite(limit):
+                    return limit
+        return _UNLIMITED
 
     def _find_halts(self) -> None:
         """Note lights, signs and crossings on the lanes that have been added to the path."""
@@ -174,21 +191,12 @@ class RulesDriver(LaneDriver):
                 if maneuver is not None:
                     end = start + _length(lane)
                     self._halts.append(_Halt(start, end, maneuver, maneuver.signals))
-            self._halts += self._crossings_on(lane, start)
+            self._halts += [
+                _Halt(start + near, start + far, crossing=crossing)
+                for crossing, near, far in lane.network.crossings_along(lane)
+            ]
         self._marks = len(lanes)
         self._halts.sort(key=lambda halt: halt.along)
-
-    def _crossings_on(self, lane: Lane, start: float) -> Iterable[_Halt]:
-        import shapely
-
-        line = shapely.LineString(lane.line)
-        network = lane.network
-        for crossing in network.crossings_near(lane):
-            part = line.intersection(crossing.polygon)
-            if part.is_empty:
-                continue
-            places = [line.project(shapely.Point(place)) for place in shapely.get_coordinates(part)]
-            yield _Halt(start + min(places), start + max(places), crossing=crossing)
 
     # What they ask for now
 
@@ -370,6 +378,10 @@ class RulesDriver(LaneDriver):
 
 def _near(one: Any, other: Any, limit: float) -> bool:
     return bool(math.hypot(one.position[0] - other.position[0], one.position[1] - other.position[1]) < limit)
+
+
+def _first_point(mark: tuple[int, Any]) -> int:
+    return mark[0]
 
 
 def _length(lane: Lane) -> float:
