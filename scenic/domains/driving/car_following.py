@@ -5,7 +5,6 @@ from collections.abc import Sequence
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from scenic.dataclass import dataclass
 from scenic.domains.driving.paths import Path
@@ -20,6 +19,8 @@ _STRIDE: Final = 4
 """Points of a path from one that is looked at to the next one."""
 _REACH: Final = 12.0
 """Metres from such a point within which the middle of a long vehicle that reaches the path lies."""
+_AWAY: Final = 1.1
+"""Metres from a place on the path to the nearest such point at most."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,38 +65,48 @@ class Traffic:
 
     Attributes:
         items: the objects.
-        places: their middles as complex numbers ``(n,)``.
+        columns: of the middles: x, y, their squared distance from the origin, and 1, ``(n, 4)``.
 
     """
 
-    __slots__ = ("items", "places")
+    __slots__ = ("columns", "items")
 
     def __init__(self, items: Sequence[Any]) -> None:
         self.items = items
-        self.places = np.array([complex(x, y) for x, y, *_ in (item.position for item in items)], complex)
+        places = [(x, y) for x, y, *_ in (item.position for item in items)]
+        self.columns = np.array([(x, y, x * x + y * y, 1.0) for x, y in places]).reshape(-1, 4)
 
 
 class Course:
     """Points of a path from an index on, every few of them, by which drivers find who is near to it."""
 
-    __slots__ = ("_begin", "_path", "_points")
+    __slots__ = ("_begin", "_path", "_rows")
 
     def __init__(self, path: Path, begin: int) -> None:
         self._path, self._begin = path, begin
         x, y = path.stretch(begin, len(path.along))[::_STRIDE].T
-        self._points = x + 1j * y
+        self._rows = np.stack([-2 * x, -2 * y, np.ones(len(x)), x * x + y * y])
 
-    def ahead(self, along: float, index: int) -> tuple[NDArray[np.complex128], int, int]:
-        """The points from an index to metres along the path.
-
-        Returns:
-            The points as complex numbers, and the indices of the first and the last one in the path.
-
-        """
-        path, first = self._path, max(index - self._begin, 0) // _STRIDE
-        last = path.index_at(along, index)
-        points = self._points[first : (last - self._begin) // _STRIDE + 2]
-        return points, self._begin + first * _STRIDE, last
+    def near(self, traffic: Traffic, index: int, end: int, margin: float) -> list[tuple[Any, int]]:
+        """Return who may reach within metres of the path from one index to another one, and the index of a point near to each."""
+        first = max(index - self._begin, 0) // _STRIDE
+        rows = self._rows[:, first : (end - self._begin) // _STRIDE + 2]
+        count = rows.shape[1]
+        if not count:
+            return []
+        # |p - q|^2 = |p|^2 - 2 p q + |q|^2, of all pairs at once.
+        squares = traffic.columns @ rows
+        least = squares.min(axis=1)
+        near = (least < _REACH * _REACH).nonzero()[0]
+        begin, items = self._begin + first * _STRIDE, traffic.items
+        found = []
+        for number, square in zip(near.tolist(), least[near].tolist(), strict=True):
+            item, point = items[number], int(squares[number].argmin())
+            reach = math.hypot(item.length, item.width) / 2 + margin + _AWAY
+            # Beyond the ends, the path goes on straight.
+            if square < reach * reach or point == 0 or point == count - 1:
+                found.append((item, min(begin + _STRIDE * point, end)))
+        return found
 
 
 def following_acceleration(
@@ -132,27 +143,24 @@ def leader_on(path: Path, index: int, agent: Any, traffic: Traffic, course: Cour
         course: of the path.
 
     """
-    x, y, *_ = agent.position
-    near = np.flatnonzero(np.abs(traffic.places - complex(x, y)) < _HORIZON)
-    if not len(near):
-        return None
     along = path.along
-    points, begin, end = course.ahead(along[index] + _HORIZON, index)
-    if not len(points):
-        return None
-    away = np.abs(points - traffic.places[near][:, None])
-    nearest = away.argmin(axis=1)
-    beside = away[np.arange(len(near)), nearest] < _REACH
+    own = along[index]
+    end = path.index_at(own + _HORIZON, index)
+    x, y, *_ = agent.position
+    margin = agent.width / 2 + _BESIDE
     best: Leader | None = None
-    for number, point in zip(near[beside].tolist(), nearest[beside].tolist(), strict=True):
-        other = traffic.items[number]
+    for other, start in course.near(traffic, index, end, margin):
         if other is agent:
             continue
         a, b, *_ = other.position
-        point, share, side = path.locate(a, b, min(begin + _STRIDE * point, end))
-        place = along[point] + share * (along[point + 1] - along[point])
-        if place <= along[index] or (best is not None and place >= best.along):
+        if math.hypot(a - x, b - y) >= _HORIZON:
             continue
+        point, share, side = path.locate(a, b, start)
+        place = along[point] + share * (along[point + 1] - along[point])
+        if place <= own or (best is not None and place >= best.along):
+            continue
+        if abs(side) > math.hypot(other.length, other.width) / 2 + margin:
+            continue  # however it is turned
         heading_difference = other.heading - path.headings[point]
         sine, cosine = abs(math.sin(heading_difference)), abs(math.cos(heading_difference))
         half = (other.length * sine + other.width * cosine) / 2

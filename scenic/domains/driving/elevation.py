@@ -5,7 +5,7 @@ All roads of a map are tables, so that many points on different roads are comput
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray

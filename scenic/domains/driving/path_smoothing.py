@@ -73,8 +73,10 @@ def _turns_back(x0: float, y0: float, x1: float, y1: float, x2: float, y2: float
 def headings_of(points: Floats) -> Floats:
     """Headings ``(n - 1,)`` of the steps between points ``(n, 2)``: radians, anticlockwise from north, without jumps."""
     steps = np.diff(points, axis=0)
-    headings: Floats = np.unwrap(np.arctan2(-steps[:, 0], steps[:, 1]))
-    return headings
+    headings: Floats = np.arctan2(-steps[:, 0], steps[:, 1])
+    if (np.abs(headings[1:] - headings[:-1]) < math.pi).all():
+        return headings
+    return np.unwrap(headings)
 
 
 def curvatures_of(points: Floats) -> Floats:

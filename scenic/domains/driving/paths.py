@@ -302,14 +302,14 @@ class Path:
         x, y = self._x[index], self._y[index]
         return x + share * (self._x[index + 1] - x), y + share * (self._y[index + 1] - y)
 
+    def lane_number(self, index: int) -> int:
+        """Return the number of the lane in `lanes` along which the path runs at a point; -1 off the lanes."""
+        return bisect_right(self.lanes, index, key=_first_point) - 1
+
     def lane_at(self, index: int) -> Any:
         """Return the lane along which the path runs at a point; ``None`` off the lanes."""
-        lane = None
-        for begin, candidate in self.lanes:
-            if begin > index:
-                break
-            lane = candidate
-        return lane
+        number = self.lane_number(index)
+        return self.lanes[number][1] if number >= 0 else None
 
     def shifted(self, begin: int, offsets: Floats) -> None:
         """Shift the points from an index on to the left, by metres ``(k,)``, and bend the path accordingly."""
@@ -328,3 +328,7 @@ class Path:
         self.curvatures[low:high] = piece.curvatures.tolist()
         steps = np.hypot(*np.diff(self.points(), axis=0).T)
         self.along = [0.0, *np.cumsum(np.maximum(steps, 1e-6)).tolist()]
+
+
+def _first_point(mark: tuple[int, Any]) -> int:
+    return mark[0]

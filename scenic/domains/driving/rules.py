@@ -1,7 +1,6 @@
 """Drivers that obey the rules of the road: speed limits, lights, signs, priority, pedestrians on crossings, gaps."""
 
 import math
-from bisect import bisect_right
 from collections.abc import Iterable
 from itertools import pairwise
 from typing import Any, Final
@@ -148,7 +147,7 @@ class RulesDriver(LaneDriver):
             return None
         # Behind the car nobody looks at limits.
         begin = self._index if path is self._path else 0
-        first = max(0, bisect_right(path.lanes, begin, key=_first_point) - 1)
+        first = max(0, path.lane_number(begin))
         count = len(path.along)
         limits = np.full(count, np.inf)
         last_limit = self._limit_before(path, first)
@@ -156,7 +155,9 @@ class RulesDriver(LaneDriver):
         for (start, lane), (end, _) in pairwise(marks):
             if end <= start:
                 continue
-            lane_limits = limits_along(lane.speedLimitRanges, np.array(path.along[start:end]) - path.along[start])
+            lane_limits = limits_along(
+                lane.speedLimitRanges, np.array(path.along[start:end]) - path.along[start]
+            )
             unlimited = ~np.isfinite(lane_limits)
             lane_limits[unlimited] = last_limit
             limits[start:end] = lane_limits
@@ -378,10 +379,6 @@ class RulesDriver(LaneDriver):
 
 def _near(one: Any, other: Any, limit: float) -> bool:
     return bool(math.hypot(one.position[0] - other.position[0], one.position[1] - other.position[1]) < limit)
-
-
-def _first_point(mark: tuple[int, Any]) -> int:
-    return mark[0]
 
 
 def _length(lane: Lane) -> float:
