@@ -418,11 +418,10 @@ class Simulation(ABC):
 
     def actionsAreCompatible(self, agent: object, actions: Sequence[object]) -> bool:
         """Return whether an agent can take these actions in one step."""
-        return all(
-            hasattr(action, "canBeTakenBy") and action.canBeTakenBy(agent)
-            for action in actions
-            if action is not None
-        )
+        for action in actions:
+            if action is not None and not (hasattr(action, "canBeTakenBy") and action.canBeTakenBy(agent)):
+                return False
+        return True
 
     def executeActions(self, allActions: Mapping[Any, Sequence[Any]]) -> None:
         """Execute the actions of all agents; ``None`` is taken, and does nothing."""
@@ -497,9 +496,9 @@ class Simulation(ABC):
         """Append the state to the trajectory."""
         self.trajectory.append(self.currentState())
         if self.poses is not None or self._on_state is not None:
-            self._now = tuple((obj.position, obj.orientation) for obj in self.objects)
-        if self.poses is not None:
-            self.poses.append(self._now)
+            self._now = tuple([(obj.position, obj.orientation) for obj in self.objects])
+            if self.poses is not None:
+                self.poses.append(self._now)
 
     def _tell_state(self, actions: ActionsTaken) -> None:
         if self._on_state is not None:

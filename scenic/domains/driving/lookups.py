@@ -114,7 +114,11 @@ class Finder:
         # Programs ask for one place again and again within a step of a simulation, and for things that stand.
         place = x, y, z
         if place not in self._known:
-            (index,) = self.near(np.array([[x, y, z]]))
+            index = len(self.elements)
+            if self._levels is None and self.elements:
+                index = self._cells.first_of(x, y)
+            if index == len(self.elements):
+                (index,) = self.near(np.array([[x, y, z]]))
             if len(self._known) >= _KEPT:
                 self._known.clear()
             self._known[place] = self.elements[index] if index < len(self.elements) else None

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from functools import cached_property
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,6 +42,9 @@ from scenic.runtime.values.lazy import Lazy, defer
 from scenic.runtime.values.values import is_random, to_vector
 
 __all__ = ["RoadNetwork"]
+
+_LATEST: Final = 64
+"""Tuples of elements that are known by identity."""
 
 
 class RoadNetwork(Frozen):
@@ -84,6 +87,8 @@ class RoadNetwork(Frozen):
         self.origin: bytes | None = None
         """The digest of all that the network follows from, where that is known."""
         self._finders: dict[Any, Finder] = {}
+        self._latest_finders: dict[int, tuple[tuple[NetworkElement, ...], Finder]] = {}
+        """Some of them by the identity of the very tuple of elements, which is kept alive here."""
         self._nested_finders: dict[str, NestedFinder] = {}
 
     @property
@@ -328,10 +333,16 @@ class RoadNetwork(Frozen):
         return element
 
     def _finder(self, elements: tuple[NetworkElement, ...]) -> Finder:
+        elements_before, finder = self._latest_finders.get(id(elements), (None, None))
+        if elements_before is elements and finder is not None:
+            return finder
         key = tuple(map(id, elements))  # they live as long as the network does
         finder = self._finders.get(key)
         if finder is None:
             finder = self._finders[key] = Finder(elements, self.tolerance, self._levels_in_space)
+        if len(self._latest_finders) >= _LATEST:
+            self._latest_finders.clear()
+        self._latest_finders[id(elements)] = elements, finder
         return finder
 
     def intersections_holding(self, places: NDArray[np.float64]) -> NDArray[np.bool_]:

@@ -117,7 +117,9 @@ class Dynamics:
         instance._activation.direct = True
         if len(actions) == 1 and isinstance(actions[0], list | tuple):
             actions = tuple(actions[0])
-        return tuple(self.at_present(action) for action in actions)
+        if any(map(is_lazy, actions)):
+            return tuple(self.at_present(action) for action in actions)
+        return actions
 
     def terminate(self, instance: Invocable, *, simulation: bool) -> Yielded:
         """``terminate``: what to yield."""

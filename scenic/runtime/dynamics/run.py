@@ -434,11 +434,13 @@ class Run:
         for agent in simulation.agents:
             agent.__dict__["lastActions"] = ()
         actions_of: dict[int, tuple[Any, ...]] = {}
-        schedule = list(simulation.scheduleForAgents())
         agents = simulation.agents
-        if schedule != agents and sorted(map(id, schedule)) != sorted(map(id, agents)):
-            raise RuntimeError("the simulator's schedule does not hold all agents, and nothing else")
-        for agent in schedule:
+        schedule = simulation.scheduleForAgents()
+        if schedule is not agents:
+            schedule = list(schedule)
+            if schedule != agents and sorted(map(id, schedule)) != sorted(map(id, agents)):
+                raise RuntimeError("the simulator's schedule does not hold all agents, and nothing else")
+        for agent in tuple(schedule):
             actions = self._turn(agent)
             if actions is None:
                 return None
@@ -447,10 +449,11 @@ class Run:
             actions_of[id(agent)] = actions
         # In the order of the agents, whatever the schedule was.
         # Agents whose behavior was taken back, as the override that gave it ended, are none any more.
+        taken = ((agent, actions_of.get(id(agent))) for agent in simulation.agents)
         return {
-            agent: actions_of[id(agent)]
-            for agent in simulation.agents
-            if id(agent) in actions_of and (actions_of[id(agent)] or agent.behavior is not None)
+            agent: actions
+            for agent, actions in taken
+            if actions or (actions is not None and agent.behavior is not None)
         }
 
     def _turn(self, agent: Any) -> tuple[Any, ...] | None:

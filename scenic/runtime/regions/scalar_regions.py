@@ -172,6 +172,10 @@ class Polygon(Flat):
         """See `Single`."""
         return self._polygons.holds_point(point[0], point[1])
 
+    def beside(self, point: Triple) -> float | None:
+        """See `Flat`."""
+        return self._polygons.distance(point[0], point[1])
+
     def holds_body(self, body: Placed) -> bool | None:
         """Decide by the region's edges if it is convex; else by a disc about the body."""
         if self._outline is not None:

@@ -79,11 +79,13 @@ class FormulaMonitor:
 
     """
 
-    __slots__ = ("_left", "_start", "verdict")
+    __slots__ = ("_left", "_start", "_steps", "verdict")
 
     def __init__(self, formula: Formula) -> None:
         self._start: Normal | None = normal(formula)
         self._left: _Clauses = _FALSE
+        self._steps: dict[_Clauses, tuple[_Clauses, _Step]] = {}
+        """The known steps by what was left before."""
         self.verdict: Verdict | None = None
         """The verdict on the states so far; ``None`` before the first."""
 
@@ -105,16 +107,15 @@ class FormulaMonitor:
             assert self.verdict is not None
             return self.verdict
         else:
-            left = self._next(evaluate)
-        self._left = left
-        if not left:
-            self.verdict = Verdict.FALSE
-        elif left == _TRUE:
-            self.verdict = Verdict.TRUE
-        elif any(all(weak for weak, _ in clause) for clause in left):
-            self.verdict = Verdict.PRESUMABLY_TRUE
-        else:
-            self.verdict = Verdict.PRESUMABLY_FALSE
+            known = self._steps.get(self._left)
+            if known is None:
+                known = self._steps[self._left] = self._left, _Step()
+            # Of equal sets one, since others may ask for atoms in another order.
+            self._left, step = known
+            left = step.taken(evaluate, self._next)
+        if left is not self._left or self.verdict is None:
+            self._left = left
+            self.verdict = _verdict(left)
         return self.verdict
 
     def _next(self, evaluate: Callable[[int], bool]) -> _Clauses:
@@ -125,6 +126,88 @@ class FormulaMonitor:
 
         clauses = [partial(clause, parts) for parts in self._left]
         return clauses[0]() if len(clauses) == 1 else _decided(False, clauses)
+
+
+def _verdict(left: _Clauses) -> Verdict:
+    """Return the verdict while some obligations are left."""
+    if not left:
+        return Verdict.FALSE
+    if left == _TRUE:
+        return Verdict.TRUE
+    if any(all(weak for weak, _ in clause) for clause in left):
+        return Verdict.PRESUMABLY_TRUE
+    return Verdict.PRESUMABLY_FALSE
+
+
+class _Step:
+    """A step from certain obligations: the atoms that it asks for one after the other, by their answers, and what is left then."""
+
+    __slots__ = ("_left", "_question", "_then")
+
+    def __init__(self) -> None:
+        self._left: _Clauses | None = None
+        self._question: int | None = None
+        self._then: dict[bool, _Step] = {}
+
+    def taken(
+        self,
+        evaluate: Callable[[int], bool],
+        work_out: Callable[[Callable[[int], bool]], _Clauses],
+    ) -> _Clauses:
+        """Return what is left after a step; what ``work_out`` gives for answers that have not come up before is kept."""
+        step = self
+        answers: list[bool] = []
+        while step._question is not None:
+            try:
+                answer = evaluate(step._question)
+            except Exception as error:  # noqa: BLE001 - it may not count
+                return work_out(_Replayed(answers, evaluate, error))
+            answers.append(answer)
+            known = step._then.get(answer)
+            if known is None:
+                break
+            step = known
+        if step._left is not None:
+            return step._left
+        replayed = _Replayed(answers, evaluate)
+        left = work_out(replayed)
+        if not replayed.has_failed:
+            self._keep(replayed.asked, left)
+        return left
+
+    def _keep(self, asked: Sequence[tuple[int, bool]], left: _Clauses) -> None:
+        step = self
+        for question, answer in asked:
+            step._question = question
+            step = step._then.setdefault(answer, _Step())
+        step._left = left
+
+
+class _Replayed:
+    """Atoms of a state of which the first ones that are asked for have been evaluated; the last of these may have failed."""
+
+    def __init__(
+        self, answers: Sequence[bool], evaluate: Callable[[int], bool], error: Exception | None = None
+    ) -> None:
+        self._answers = iter(answers)
+        self._evaluate = evaluate
+        self._error = error
+        self.has_failed = error is not None
+        self.asked: list[tuple[int, bool]] = []
+
+    def __call__(self, index: int) -> bool:
+        answer = next(self._answers, None)
+        if answer is None:
+            error, self._error = self._error, None
+            if error is not None:
+                raise error
+            try:
+                answer = self._evaluate(index)
+            except Exception:
+                self.has_failed = True
+                raise
+        self.asked.append((index, answer))
+        return answer
 
 
 def _once(

@@ -25,7 +25,9 @@ triangles = st.tuples(grid, grid, grid, grid).map(
 def test_it_is_the_first_that_holds_the_point(polygons: list[shapely.Polygon]) -> None:
     x, y = (part.ravel() for part in np.meshgrid(np.arange(-6, 9, 0.5), np.arange(-6, 9, 0.5)))
     x, y = np.append(x, np.nan), np.append(y, 0)
-    found = CellIndex(polygons).first_at(x, y)
+    index = CellIndex(polygons)
+    found = index.first_at(x, y)
+    assert [index.first_of(*place) for place in zip(x.tolist(), y.tolist(), strict=True)] == found.tolist()
     held = np.array([shapely.intersects_xy(polygon, x, y) for polygon in polygons])
     expected = np.where(held.any(axis=0), held.argmax(axis=0), len(polygons))
     assert (found == expected).all()
@@ -34,4 +36,5 @@ def test_it_is_the_first_that_holds_the_point(polygons: list[shapely.Polygon]) -
 def test_none_and_empty_polygons() -> None:
     x = np.zeros(2)
     assert CellIndex([]).first_at(x, x).tolist() == [0, 0]
+    assert CellIndex([]).first_of(0.0, 0.0) == 0
     assert CellIndex([shapely.Polygon(), shapely.box(0, 0, 1, 1)]).first_at(x, x).tolist() == [1, 1]

@@ -132,5 +132,8 @@ def test_distances_and_limits_agree_with_those_of_shapely(polygon):
     x, y = np.append(x, corners[:, 0]), np.append(y, corners[:, 1])
     expected = shapely.distance(polygon, shapely.points(x, y))
     assert (polygons.distances(x, y) == expected).all()
+    assert [
+        polygons.distance(*place) for place in zip(x.tolist(), y.tolist(), strict=True)
+    ] == expected.tolist()
     limits = np.append(rng.uniform(0, 5, 3_000), np.zeros(len(corners)))
     assert (polygons.lie_farther(x, y, limits) == (expected > limits)).all()

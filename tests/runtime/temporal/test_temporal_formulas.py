@@ -215,6 +215,31 @@ def test_an_exception_counts_only_where_nothing_else_decides() -> None:
         FormulaMonitor(Compound("or", (Atom(0), Atom(2)))).add(evaluate)
 
 
+def test_exceptions_count_in_later_states_as_in_the_first() -> None:
+    """What a monitor keeps of steps that went well changes nothing where an atom fails."""
+    generator = random.Random(4)
+
+    def evaluate(state: tuple[bool | None, ...], index: int) -> bool:
+        if state[index] is None:
+            raise ZeroDivisionError(index)
+        return bool(state[index])
+
+    def outcome(monitor: FormulaMonitor, state: tuple[bool | None, ...]) -> object:
+        try:
+            return monitor.add(lambda index: evaluate(state, index))
+        except ZeroDivisionError as error:
+            return error.args
+
+    for tree, _ in pairs(400, 9):
+        kept = FormulaMonitor(formula(tree))
+        for _ in range(12):
+            state = tuple(generator.choice((True, True, False, None)) for _ in ATOMS)
+            fresh = FormulaMonitor(formula(tree))
+            fresh._start, fresh._left, fresh.verdict = kept._start, kept._left, kept.verdict
+            assert outcome(kept, state) == outcome(fresh, state)
+            assert kept.left == fresh.left
+
+
 def test_of_several_exceptions_the_first_is_raised() -> None:
     def evaluate(index: int) -> bool:
         raise (ZeroDivisionError, KeyError)[index]

@@ -1,6 +1,8 @@
 """The polygon, among many, that holds a point: by a grid of bins over their boxes."""
 
+import math
 from collections.abc import Sequence
+from functools import cached_property
 from typing import Final
 
 import numpy as np
@@ -75,6 +77,28 @@ class CellIndex:
             is_inside = shapely.intersects_xy(self._polygons[polygon], x[point], y[point])
             np.minimum.at(result, point[is_inside], polygon[is_inside])
         return result
+
+    def first_of(self, x: float, y: float) -> int:
+        """As `first_at`, of one point."""
+        import shapely
+
+        none = len(self._polygons)
+        if not (math.isfinite(x) and math.isfinite(y)):
+            return none
+        low_x, low_y, width, height, columns, rows = self._grid
+        column = min(max(math.floor((x - low_x) / width), 0), columns - 1)
+        number = column * rows + min(max(math.floor((y - low_y) / height), 0), rows - 1)
+        members = self._members[self._starts[number] : self._starts[number + 1]]
+        holders = members[shapely.intersects_xy(self._polygons[members], x, y)]
+        return int(holders[0]) if len(holders) else none
+
+    @cached_property
+    def _grid(self) -> tuple[float, float, float, float, int, int]:
+        """The grid on plain numbers: its corner, the size of a bin, and the numbers of columns and rows."""
+        low_x, low_y = self._low.tolist()
+        width, height = self._edge.tolist()
+        columns, rows = self._shape.tolist()
+        return low_x, low_y, width, height, columns, rows
 
 
 __all__ = ["CellIndex"]

@@ -17,6 +17,8 @@ _ROUNDING: Final = 4e-16
 Ends = tuple[Floats, Floats]
 """Lower and upper ends of numbers, ``(m | 1,)`` each."""
 
+_LARGE: Final = 200
+"""Corners of polygons from which on it is asked first whether a single point lies inside."""
 TOLERANCE: Final = 1e-9
 """Metres by which something may stick out of a container, for rounding."""
 
@@ -218,6 +220,21 @@ class Polygons:
         distances = np.zeros(len(x))
         distances[outside] = shapely.distance(self.polygon, shapely.points(x[outside], y[outside]))
         return distances
+
+    def distance(self, x: float, y: float) -> float:
+        """As `distances`, of one point."""
+        import shapely
+
+        if self._is_large and self.holds_point(x, y):
+            return 0.0
+        return float(shapely.distance(self.polygon, shapely.points(np.array((x, y)))))
+
+    @cached_property
+    def _is_large(self) -> bool:
+        """Return whether visiting every edge takes longer than asking first whether the point lies inside."""
+        import shapely
+
+        return bool(shapely.get_num_coordinates(self.polygon) > _LARGE)
 
     def lie_farther(self, x: Floats, y: Floats, limits: Floats) -> Booleans:
         """Return a mask ``(n,)`` of points whose distance from the polygons exceeds ``limits`` ``(n,)``; sooner than by `distances`."""
