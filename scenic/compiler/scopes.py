@@ -147,6 +147,11 @@ class Reference:
     binding: Binding | None
 
 
+def _place(noted: tuple[Any, Scope]) -> tuple[int, int]:
+    node = noted[0]
+    return node.lineno, node.col_offset
+
+
 REBINDING: Final = frozenset({"exec", "globals", "vars"})
 """Builtins with which programs may bind names in ways that the text does not show."""
 
@@ -207,7 +212,9 @@ class Resolution:
         """The nodes of a class in the order of the text, each with the scope in which it stands; none of names and constants."""
         nodes = self._nodes_in_order.get(cls)
         if nodes is None:
-            nodes = sorted(self.by_class.get(cls, ()), key=lambda item: position(item[0]))
+            nodes = list(self.by_class.get(cls, ()))
+            if "lineno" in cls._attributes:
+                nodes.sort(key=_place)
             self._nodes_in_order[cls] = nodes
         return nodes
 

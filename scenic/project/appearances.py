@@ -4,7 +4,7 @@ import ast
 from collections.abc import Iterator
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.traversal import walk
+from scenic.compiler.scopes import Resolution
 from scenic.formats.appearance_names import NAMES, advice
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.source import Source
@@ -12,11 +12,11 @@ from scenic.language.source import Source
 __all__ = ["appearance_findings"]
 
 
-def appearance_findings(tree: ast.Module, source: Source) -> Iterator[Diagnostic]:
+def appearance_findings(resolution: Resolution, source: Source) -> Iterator[Diagnostic]:
     """Reports names of appearances that there are not, where they are written out."""
     if "appearance" not in source.text:
         return
-    for node in walk(tree):
+    for node, _ in (*resolution.nodes(scenic.SpecifierPhrase), *resolution.nodes(scenic.PropertyDef)):
         match node:
             case (
                 scenic.SpecifierPhrase(

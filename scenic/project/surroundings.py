@@ -51,7 +51,7 @@ class _Surroundings:
 
     def findings(self) -> Iterator[Diagnostic]:
         yield from self._imports.findings()
-        tree, source = self._model.tree, self._model.module.source
-        yield from map_findings(tree, source)
-        yield from texture_findings(tree, source)
-        yield from appearance_findings(tree, source)
+        module = self._model.module
+        yield from map_findings(module.tree, module.source)
+        yield from texture_findings(module.resolution, module.source)
+        yield from appearance_findings(module.resolution, module.source)

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import Final
 
 from scenic.compiler import tree as scenic
+from scenic.compiler.scopes import Resolution
 from scenic.formats.texture_names import SUFFIXES, is_image_name
 from scenic.language.diagnostics import Diagnostic, Severity
 from scenic.language.source import Source
@@ -16,7 +17,7 @@ __all__ = ["texture_findings"]
 _CHOICES: Final = frozenset({"Uniform", "Discrete"})
 
 
-def texture_findings(tree: ast.Module, source: Source) -> Iterator[Diagnostic]:
+def texture_findings(resolution: Resolution, source: Source) -> Iterator[Diagnostic]:
     """Warns of ``texture`` properties that name image files which are not there.
 
     A warning only: scenes are sampled without their textures, and only pictures and labels need the files.
@@ -24,7 +25,8 @@ def texture_findings(tree: ast.Module, source: Source) -> Iterator[Diagnostic]:
     if "texture" not in source.text:
         return
     folder = os.path.dirname(os.path.abspath(source.filename))
-    for node in ast.walk(tree):
+    nodes = (*resolution.nodes(scenic.SpecifierPhrase), *resolution.nodes(scenic.PropertyDef))
+    for node, _ in nodes:
         for name, place in _names(_texture(node)):
             path = os.path.join(folder, name)
             if "\0" in name or os.path.isfile(path):

@@ -13,7 +13,7 @@ from scenic.compiler.checks.context import CheckContext
 from scenic.compiler.semantics.classes import LIBRARY
 from scenic.compiler.semantics.model import Model
 from scenic.compiler.semantics.symbols import Symbol, SymbolKind
-from scenic.compiler.traversal import parts, walk
+from scenic.compiler.traversal import parts
 from scenic.language.diagnostics import Diagnostic
 
 __all__ = ["check_agents"]
@@ -38,14 +38,15 @@ def check_agents(context: CheckContext) -> Iterator[Diagnostic]:
     """Reports objects whose behaviors take actions of the driving domain that they cannot take."""
     if "behavior" not in context.source.text or not any(name in context.brought for name in _NEEDS):
         return
-    for cls, value in _given(context.tree):
+    known: dict[object, dict[str, bool]] = {}
+    for cls, value in _given(context):
         agent = context.meaning(cls)
         call = value.func if isinstance(value, ast.Call) else value
         behavior = context.meaning(call) if isinstance(call, ast.Name | ast.Attribute) else None
         if agent is None or behavior is None or behavior.kind is not SymbolKind.BEHAVIOR:
             continue
         able = _abilities(context, agent)
-        needs = _needs(context, behavior, 0)
+        needs = _needs(context, behavior, known)
         # A behavior for several kinds of agents asks which one it has.
         if able is None or len(needs) != 1 or needs.keys() <= able or not all(needs.values()):
             continue
@@ -58,14 +59,12 @@ def check_agents(context: CheckContext) -> Iterator[Diagnostic]:
         )
 
 
-def _given(tree: ast.Module) -> Iterator[tuple[ast.expr, ast.expr]]:
+def _given(context: CheckContext) -> Iterator[tuple[ast.expr, ast.expr]]:
     """Names of classes with the behaviors that ``new`` gives to their instances."""
-    for node in walk(tree):
-        if isinstance(node, scenic.New):
-            for phrase in node.specifiers:
-                match phrase:
-                    case scenic.SpecifierPhrase(property="behavior", operands=[ast.expr() as value, *_]):
-                        yield node.cls, value
+    for node, _ in context.nodes(scenic.New):
+        for phrase in node.specifiers:
+            if phrase.property == "behavior" and phrase.operands and phrase.operands[0] is not None:
+                yield node.cls, phrase.operands[0]
 
 
 def _abilities(model: Model, agent: Symbol) -> frozenset[str] | None:
@@ -89,8 +88,21 @@ def _abilities(model: Model, agent: Symbol) -> frozenset[str] | None:
     return frozenset(able)
 
 
-def _needs(model: Model, behavior: Symbol, depth: int) -> dict[str, bool]:
+def _needs(
+    model: Model, behavior: Symbol, known: dict[object, dict[str, bool]], depth: int = 0
+) -> dict[str, bool]:
     """The abilities that agents of a behavior need, and whether that is so whatever the behavior asks with ``if``."""
+    # Those of behaviors of other modules are known until one of the modules changes.
+    table = known if behavior.module is model.module else model.modules.derived
+    key = (behavior.node, depth)
+    if key not in table:
+        table[key] = _find_needs(model, behavior, known, depth)
+    return table[key]
+
+
+def _find_needs(
+    model: Model, behavior: Symbol, known: dict[object, dict[str, bool]], depth: int
+) -> dict[str, bool]:
     module, node = behavior.module, behavior.node
     if module is None or not isinstance(node, scenic.BehaviorDef) or depth > _DEEPEST:
         return {}
@@ -98,7 +110,7 @@ def _needs(model: Model, behavior: Symbol, depth: int) -> dict[str, bool]:
 
     def needs_of_run(target: ast.expr) -> dict[str, bool]:
         run = _behavior_of(home, target)
-        return {} if run is None or run == behavior else _needs(model, run, depth + 1)
+        return {} if run is None or run == behavior else _needs(model, run, known, depth + 1)
 
     def needs_of(part: ast.AST) -> dict[str, bool]:
         if isinstance(part, ast.If):

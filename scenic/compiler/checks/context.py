@@ -1,7 +1,7 @@
 """The input of every rule: the program, what its names mean, and the making of diagnostics."""
 
 import ast
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import Any, Final
 
@@ -129,6 +129,15 @@ class CheckContext(Model):
         )
 
     # What its names mean
+
+    @cached_property
+    def attempts(self) -> Sequence[tuple[tuple[int, int], ...]]:
+        """The stretches of the text in which exceptions are caught, in order; none lies in another."""
+        attempts: list[tuple[tuple[int, int], ...]] = []
+        for node, _ in self.nodes(ast.Try):
+            if node.handlers and not (attempts and position(node) < attempts[-1][1]):
+                attempts.append((position(node), position(node.handlers[0])))
+        return attempts
 
     def is_cut(self, node: ast.AST) -> bool:
         """Return whether a comma separates an object from the rest of its last operand, which SC311 reports."""

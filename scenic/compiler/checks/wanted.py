@@ -2,6 +2,7 @@
 
 import ast
 import re
+from bisect import bisect_left
 from collections.abc import Iterator, Sequence
 from typing import Final
 
@@ -139,9 +140,9 @@ def may_be_meant(node: ast.AST, scope: Scope, context: CheckContext) -> bool:
 
 def is_attempt(node: ast.AST, context: CheckContext) -> bool:
     """Return whether exceptions are caught where a node stands."""
+    attempts = context.attempts
+    if not attempts:
+        return False
     place = position(node)
-    return any(
-        position(attempt) < place < position(attempt.handlers[0])
-        for attempt in context.nodes_around(node, ast.Try)
-        if attempt.handlers
-    )
+    index = bisect_left(attempts, (place,))
+    return index > 0 and place < attempts[index - 1][1]

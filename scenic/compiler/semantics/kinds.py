@@ -5,9 +5,8 @@
 
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
-from typing import Final
+from typing import Final, NamedTuple
 
-from scenic.dataclass import dataclass
 from scenic.language.properties import attributes_of, properties_of
 from scenic.language.types import Type
 
@@ -35,8 +34,7 @@ __all__ = [
 ]
 
 
-@dataclass(frozen=True, slots=True)
-class ValueKind:
+class ValueKind(NamedTuple):
     """A kind of values.
 
     ``name`` is the noun for messages. ``size`` is the number of elements of a tuple or list that stands in the text.

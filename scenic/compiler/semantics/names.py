@@ -38,7 +38,7 @@ class Names:
         self.modules: Final = modules
         self.tree: Final = module.tree
         self.resolution: Final = module.resolution
-        self._definitions: Final[dict[ast.expr, Symbol | None]] = {}
+        self._definitions: Final[dict[ast.expr | None, Symbol | None]] = {}
         self._symbols: Final[dict[Binding, Symbol]] = {}
         self._homes: Final[dict[ast.expr, FoundModule | None]] = {}
 
@@ -161,13 +161,15 @@ class Names:
 
     def definition(self, name: ast.expr | None) -> Symbol | None:
         """The one definition that an expression can only mean, in whatever module; ``None`` if there may be others, or decorators."""
+        # Several rules ask about each name.
+        if name in self._definitions:
+            return self._definitions[name]
         if name is None or self.resolution.reflective:
             return None
-        # Several rules ask about each name.
-        if name not in self._definitions:
-            symbol = self.name_meaning(name) if self._is_certain(name) else None
-            self._definitions[name] = symbol if symbol is not None and symbol.is_definite else None
-        return self._definitions[name]
+        symbol = self.name_meaning(name) if self._is_certain(name) else None
+        definition = symbol if symbol is not None and symbol.is_definite else None
+        self._definitions[name] = definition
+        return definition
 
     def definitions_brought(self) -> Iterator[Symbol]:
         """Return the definitions that star imports and the model bring."""
@@ -239,16 +241,25 @@ class Names:
 
     def provided(self, name: ast.expr | None) -> str | None:
         """The name that an expression is, if it certainly means what the language provides under that name."""
-        return None if self.wildcard else self.likely_provided(name)
+        return self._provided.get(name)
 
     def likely_provided(self, name: ast.expr | None) -> str | None:
         """The name that an expression is, if nothing that is known binds it, but the language provides it."""
-        if not isinstance(name, ast.Name):
-            return None
-        reference = self.resolution.references.get(name)
-        if reference is None or reference.binding is not None or name.id in self.brought:
-            return None
-        return name.id if self.module.is_scenic or hasattr(builtins, name.id) else None
+        return self._likely_provided.get(name)
+
+    @cached_property
+    def _provided(self) -> Mapping[ast.AST | None, str]:
+        return {} if self.wildcard else self._likely_provided
+
+    @cached_property
+    def _likely_provided(self) -> Mapping[ast.AST | None, str]:
+        return {
+            use.node: name
+            for name, uses in self.resolution.uses.items()
+            if name not in self.brought and (self.module.is_scenic or hasattr(builtins, name))
+            for use in uses
+            if use.binding is None
+        }
 
     def constant(self, name: ast.Name) -> ast.expr | None:
         """Return the literal that is certainly the value of a name: a number, text or collection assigned just once."""

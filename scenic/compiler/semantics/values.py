@@ -6,9 +6,9 @@ through names all of whose values the text shows. Its kind is certain, or nothin
 
 import ast
 import os
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from types import MappingProxyType
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.scopes import Binding, BindingKind, Scope, ScopeKind
@@ -22,7 +22,6 @@ from scenic.compiler.semantics.symbols import (
     builtin_symbol,
     symbol_of_binding,
 )
-from scenic.dataclass import dataclass
 from scenic.language.members import INSTANCE_METHODS, MEMBERS, members_of
 from scenic.language.members import Member as DeclaredMember
 from scenic.language.names import NAMES, NameKind
@@ -77,8 +76,7 @@ _DECLARED: Final[Mapping[str, str]] = MappingProxyType(
 _MOST_BASES: Final = 20
 
 
-@dataclass(frozen=True, slots=True)
-class Value:
+class Value(NamedTuple):
     """A value, as far as it is known: its certain kind, its likely class, and the likely class of the elements of a sequence."""
 
     kind: ValueKind | None = None
@@ -93,6 +91,7 @@ class Value:
 
 
 _UNKNOWN: Final = Value()
+_NUMBER: Final = Value(kinds.NUMBER)
 
 
 class Values:
@@ -104,15 +103,20 @@ class Values:
         self._values: Final[dict[ast.expr, Value]] = {}
         self._named_classes: Final[dict[ast.expr, Class | None]] = {}
         self._meanings: Final[dict[ast.expr, Symbol | None]] = {}
+        self._bindings: Final[dict[Binding | Module, Value]] = {}
+        """The values of names by their bindings, and those of the egos of modules."""
 
     def value(self, module: Module, node: ast.expr, depth: int = 0) -> Value:
         """Return the value of an expression."""
         if depth > _DEEPEST:
             return _UNKNOWN
-        if node not in self._values:
+        known = self._values.get(node)
+        if known is None:
             self._values[node] = _UNKNOWN  # A name that is bound to itself.
-            self._values[node] = self._infer(module, node, depth + 1)
-        return self._values[node]
+            infer = _INFERENCES.get(node.__class__)
+            known = _UNKNOWN if infer is None else infer(self, module, node, depth + 1)
+            self._values[node] = known
+        return known
 
     def meaning(self, module: Module, node: ast.expr, depth: int = 0) -> Symbol | None:
         """The meaning of a name or an attribute of a program; ``None`` if it is unknown."""
@@ -149,61 +153,55 @@ class Values:
 
     # Expressions
 
-    def _infer(self, module: Module, node: ast.expr, depth: int) -> Value:
-        match node:
-            case ast.Tuple(elts=parts) | ast.List(elts=parts):
-                return self._display("tuple" if isinstance(node, ast.Tuple) else "list", module, parts, depth)
-            case ast.ListComp(elt=element):
-                value = self.value(module, element, depth)
-                return Value(ValueKind("list", items=value.kind), elements=value.cls)
-            case ast.Subscript(value=value, slice=index):
-                return self._item(self.value(module, value, depth), index)
-            case scenic.New(cls=cls):
-                known = self.class_of_objects(module, cls)
-                meant = self.meaning(module, cls, depth) if known is None else known.symbol
-                return Value(_instance(known), _if_class(meant))
-            case ast.IfExp(body=body, orelse=orelse):
-                return self._alike(module, (body, orelse), depth)
-            case ast.Call():
-                return self._call(module, node, depth)
-            case ast.Attribute():
-                meant = self.meaning(module, node, depth)
-                likely = _UNKNOWN if meant is None else self._annotated_symbol(meant, depth, called=False)
-                return Value(self._attribute(module, node, depth), likely.cls, likely.elements)
-            case ast.Name():
-                return self._name(module, node, depth)
-        return Value(self._plain(module, node, depth))
+    def _sequence(self, module: Module, node: ast.Tuple | ast.List, depth: int) -> Value:
+        """The value of a tuple or list in the text."""
+        name = "tuple" if isinstance(node, ast.Tuple) else "list"
+        parts = node.elts
+        if any(isinstance(part, ast.Starred) for part in parts):
+            return Value(ValueKind(name))
+        values = [self.value(module, part, depth) for part in parts[:_MOST_PARTS]]
+        common = _common(values) if len(parts) <= _MOST_PARTS else _UNKNOWN
+        known = (value.kind for value in values)
+        odd = next((each for each in known if each is not None and each.name not in kinds.NUMBERS), None)
+        return Value(ValueKind(name, len(parts), items=common.kind, odd=odd), elements=common.cls)
 
-    def _plain(self, module: Module, node: ast.expr, depth: int) -> ValueKind | None:
-        """Return the kind of an expression that is no object of a class."""
+    def _list_comprehension(self, module: Module, node: ast.ListComp, depth: int) -> Value:
+        element = self.value(module, node.elt, depth)
+        return Value(ValueKind("list", items=element.kind), elements=element.cls)
 
-        def kind(part: ast.expr | None) -> ValueKind | None:
-            return None if part is None else self.value(module, part, depth).kind
+    def _dictionary(self, module: Module, node: ast.Dict, depth: int) -> Value:
+        items = joint([self.value(module, each, depth).kind for each in node.values])
+        return Value(ValueKind("dictionary", items=items))
 
-        match node:
-            case ast.Constant(value=value):
-                return kind_of_constant(value)
-            case ast.JoinedStr():
-                return kinds.TEXT
-            case ast.Lambda():
-                return kinds.FUNCTION
-            case ast.Dict(values=values):
-                return ValueKind("dictionary", items=joint(list(map(kind, values))))
-            case ast.DictComp(value=value):
-                return ValueKind("dictionary", items=kind(value))
-            case ast.Set() | ast.SetComp():
-                return ValueKind("set")
-            case ast.UnaryOp(op=ast.Not()):
-                return kinds.BOOLEAN
-            case ast.UnaryOp(operand=operand):
-                return kinds.NUMBER if kind(operand) == kinds.NUMBER else None
-            case ast.BinOp(left=left, right=right):
-                return _binary(kind(left), kind(right), node.op)
-            case scenic.Operation(operator="deg", operands=[operand]):
-                return kind(operand)
-            case scenic.Operation(operator=name):
-                return kind_of_type(OPERATORS[name].result) if name in OPERATORS else None
-        return None
+    def _dictionary_comprehension(self, module: Module, node: ast.DictComp, depth: int) -> Value:
+        return Value(ValueKind("dictionary", items=self.value(module, node.value, depth).kind))
+
+    def _instance(self, module: Module, node: scenic.New, depth: int) -> Value:
+        known = self.class_of_objects(module, node.cls)
+        meant = self.meaning(module, node.cls, depth) if known is None else known.symbol
+        return Value(_kind_of_instances(known), _if_class(meant))
+
+    def _conditional(self, module: Module, node: ast.IfExp, depth: int) -> Value:
+        return self._alike(module, (node.body, node.orelse), depth)
+
+    def _attribute(self, module: Module, node: ast.Attribute, depth: int) -> Value:
+        meant = self.meaning(module, node, depth)
+        likely = _UNKNOWN if meant is None else self._annotated_symbol(meant, depth, called=False)
+        return Value(self._kind_of_attribute(module, node, depth), likely.cls, likely.elements)
+
+    def _unary(self, module: Module, node: ast.UnaryOp, depth: int) -> Value:
+        if isinstance(node.op, ast.Not):
+            return Value(kinds.BOOLEAN)
+        return _NUMBER if self.value(module, node.operand, depth).kind == kinds.NUMBER else _UNKNOWN
+
+    def _arithmetic(self, module: Module, node: ast.BinOp, depth: int) -> Value:
+        left, right = (self.value(module, side, depth).kind for side in (node.left, node.right))
+        return Value(_binary(left, right, node.op))
+
+    def _operation(self, module: Module, node: scenic.Operation, depth: int) -> Value:
+        if node.operator == "deg" and node.operands[0] is not None:
+            return Value(self.value(module, node.operands[0], depth).kind)
+        return Value(kind_of_type(OPERATORS[node.operator].result)) if node.operator in OPERATORS else _UNKNOWN
 
     def class_of_objects(self, module: Module, name: ast.expr) -> Class | None:
         """Return the class that an expression certainly names, if it may make objects of the scene."""
@@ -221,21 +219,10 @@ class Values:
     def _alike(self, module: Module, options: Iterable[ast.expr], depth: int) -> Value:
         return _common([self.value(module, option, depth) for option in options])
 
-    def _display(self, name: str, module: Module, parts: Sequence[ast.expr], depth: int) -> Value:
-        """The value of a tuple or list in the text."""
-        if any(isinstance(part, ast.Starred) for part in parts):
-            return Value(ValueKind(name))
-        values = [self.value(module, part, depth) for part in parts[:_MOST_PARTS]]
-        common = _common(values) if len(parts) <= _MOST_PARTS else _UNKNOWN
-        known = (value.kind for value in values)
-        odd = next((each for each in known if each is not None and each.name not in kinds.NUMBERS), None)
-        return Value(ValueKind(name, len(parts), items=common.kind, odd=odd), elements=common.cls)
-
-    @staticmethod
-    def _item(owner: Value, index: ast.expr) -> Value:
-        """Return the value of ``owner[index]``."""
+    def _item(self, module: Module, node: ast.Subscript, depth: int) -> Value:
+        owner = self.value(module, node.value, depth)
         kind = owner.kind
-        if isinstance(index, ast.Slice):
+        if isinstance(node.slice, ast.Slice):
             return Value(elements=owner.elements)
         if kind == kinds.VECTOR:
             return Value(kinds.NUMBER)
@@ -312,7 +299,7 @@ class Values:
 
     # Attributes
 
-    def _attribute(self, module: Module, node: ast.Attribute, depth: int) -> ValueKind | None:
+    def _kind_of_attribute(self, module: Module, node: ast.Attribute, depth: int) -> ValueKind | None:
         owner = self.value(module, node.value, depth).kind
         if owner is None:
             return None
@@ -376,14 +363,21 @@ class Values:
 
     def _ego(self, module: Module, node: ast.Name, depth: int) -> Value:
         """Return the value of the ego: one of the objects that the program makes it."""
+        likely = self._bindings.get(module)
+        if likely is None:
+            self._bindings[module] = Value(ValueKind("object"))
+            likely = self._bindings[module] = self._likely_ego(module, depth)
+        if self._classes.names(module).provided(node) != "ego":
+            return Value(None, likely.cls)
+        return likely
+
+    def _likely_ego(self, module: Module, depth: int) -> Value:
         names = self._classes.names(module)
         uses = module.resolution.uses.get("ego", ())
         stores = [use.node for use in uses if isinstance(use.node.ctx, ast.Store)]
         values = [names.assigned.get(each) for each in stores]
         known = [each for each in values if each is not None]
         likely = self._alike(module, known, depth) if known else _UNKNOWN
-        if names.provided(node) != "ego":
-            return Value(None, likely.cls)
         one = known[0] if len(known) == len(stores) == 1 else None
         members = likely.kind.members if isinstance(one, scenic.New) and likely.kind is not None else None
         return Value(ValueKind("object", members=members), likely.cls)
@@ -392,6 +386,13 @@ class Values:
         """The value of a name, whatever it may be elsewhere."""
         if depth > _DEEPEST:
             return _UNKNOWN
+        known = self._bindings.get(binding)
+        if known is None:
+            self._bindings[binding] = _UNKNOWN
+            known = self._bindings[binding] = self._bound_value(module, binding, depth)
+        return known
+
+    def _bound_value(self, module: Module, binding: Binding, depth: int) -> Value:
         if binding.kinds == {BindingKind.SELF} or binding.kinds == {BindingKind.PARAMETER}:
             return self._parameter(module, binding, depth)
         if binding.kinds == {BindingKind.IMPORTED}:
@@ -440,7 +441,7 @@ class Values:
         if name is not None and name in _ANNOTATIONS:
             return _ANNOTATIONS[name]
         known = self.class_of_objects(module, annotation)
-        return None if known is None or known.names is None else _instance(known)
+        return None if known is None or known.names is None else _kind_of_instances(known)
 
     def _annotated_symbol(self, symbol: Symbol, depth: int, *, called: bool) -> Value:
         """Return the value of what a symbol means, or of a call of it, by its annotation."""
@@ -501,7 +502,7 @@ class Values:
         return None
 
 
-def _instance(cls: Class | None) -> ValueKind:
+def _kind_of_instances(cls: Class | None) -> ValueKind:
     """Return the kind of what ``new`` makes of a class."""
     if cls is None:
         return ValueKind("object")
@@ -573,3 +574,29 @@ def _options(node: ast.Call) -> Iterator[ast.expr]:
             yield argument
     if not node.args:
         yield node
+
+
+_INFERENCES: Final[Mapping[type[ast.AST], Callable[[Values, Module, Any, int], Value]]] = MappingProxyType(
+    {
+        ast.Attribute: Values._attribute,
+        ast.BinOp: Values._arithmetic,
+        ast.Call: Values._call,
+        ast.Constant: lambda _values, _module, node, _depth: Value(kind_of_constant(node.value)),
+        ast.Dict: Values._dictionary,
+        ast.DictComp: Values._dictionary_comprehension,
+        ast.IfExp: Values._conditional,
+        ast.JoinedStr: lambda *_: Value(kinds.TEXT),
+        ast.Lambda: lambda *_: Value(kinds.FUNCTION),
+        ast.List: Values._sequence,
+        ast.ListComp: Values._list_comprehension,
+        ast.Name: Values._name,
+        ast.Set: lambda *_: Value(ValueKind("set")),
+        ast.SetComp: lambda *_: Value(ValueKind("set")),
+        ast.Subscript: Values._item,
+        ast.Tuple: Values._sequence,
+        ast.UnaryOp: Values._unary,
+        scenic.New: Values._instance,
+        scenic.Operation: Values._operation,
+    }
+)
+"""The ways to infer the values of expressions, by their classes; nothing is known of others."""
