@@ -167,7 +167,4 @@ def _around(module: Module, span: Span) -> Symbol:
 def module_symbol(module: Module) -> Symbol:
     """Return a module as the caller of what is called in it outside of definitions."""
     name = module.filename.replace("\\", "/").rpartition("/")[2]
-    whole = Span(1, 0, len(module.source.lines), len(module.source.lines[-1]))
-    return Symbol(
-        name, SymbolKind.MODULE, module.filename, Span(1, 0, 1, 0), whole, module=module, node=module.tree
-    )
+    return Symbol(name, SymbolKind.MODULE, module.filename, module=module, node=module.tree)

@@ -47,8 +47,13 @@ class Member:
     type: str | None = None
     attributes: tuple[str, ...] = ()
     needs: tuple[str, ...] = ()
-    documentation: str | None = field(default=None, compare=False)
+    declared: str | None = field(default=None, compare=False)
     symbol: Symbol | None = None
+
+    @property
+    def documentation(self) -> str | None:
+        """The documentation that the language declares, or that the definition has."""
+        return self.declared if self.symbol is None else self.symbol.documentation
 
     @property
     def final(self) -> bool:
@@ -195,7 +200,7 @@ class Classes:
         if module is None or not isinstance(symbol.node, ast.ClassDef):
             return None
         if is_of_library(symbol.filename):
-            return module.derived(f"class {symbol.name} {symbol.span}", lambda: self._of_name(module, symbol))
+            return module.derived(symbol.binding or symbol.node, lambda: self._of_name(module, symbol))
         return self._of_name(module, symbol)
 
     def of_node(self, module: Module, node: ast.AST) -> Class | None:
@@ -203,7 +208,8 @@ class Classes:
         binding = module.resolution.sites.get(node)
         if binding is None or not isinstance(node, ast.ClassDef):
             return None
-        return self._once(module, symbol_of_binding(module, binding), node, definite=True)
+        names = self.names(module)
+        return self._once(module, names.symbol_of(names.own(binding)), node, definite=True)
 
     def _meaning(self, module: Module, node: ast.expr, depth: int = 0) -> Symbol | None:
         """The meaning of a name, or of an attribute of a module or class; ``None`` if it is unknown."""
@@ -307,7 +313,7 @@ def _built_in(name: str) -> Class:
             SymbolKind.METHOD if each.is_method else SymbolKind.ATTRIBUTE,
             name,
             type=each.type,
-            documentation=each.documentation,
+            declared=each.documentation,
         )
         for each in attributes_of(name).values()
     ]
@@ -341,8 +347,6 @@ def _own(module: Module, symbol: Symbol, node: ast.ClassDef) -> Iterator[Member]
                 item.name,
                 SymbolKind.PROPERTY,
                 module.filename,
-                module.word_span(item, item.name),
-                module.source.span(item),
                 symbol.name,
                 module,
                 item,
@@ -354,7 +358,6 @@ def _own(module: Module, symbol: Symbol, node: ast.ClassDef) -> Iterator[Member]
                 module.text(item.value),
                 attributes=tuple(item.attributes),
                 needs=_needs(item.value),
-                documentation=place.documentation,
                 symbol=place,
             )
     scope = module.resolution.scopes.get(node)
@@ -363,7 +366,7 @@ def _own(module: Module, symbol: Symbol, node: ast.ClassDef) -> Iterator[Member]
         kind = SymbolKind.METHOD if inner.kind is SymbolKind.METHOD else SymbolKind.ATTRIBUTE
         statement = None if inner.node is None else module.assignment_of.get(inner.node)
         value = None if statement is None or statement.value is None else module.text(statement.value)
-        yield Member(binding.name, kind, symbol.name, value, documentation=inner.documentation, symbol=inner)
+        yield Member(binding.name, kind, symbol.name, value, symbol=inner)
     yield from _set_by_methods(module, symbol, node)
 
 
@@ -395,8 +398,6 @@ def _set_by_methods(module: Module, symbol: Symbol, node: ast.ClassDef) -> Itera
                         attribute,
                         SymbolKind.ATTRIBUTE,
                         module.filename,
-                        module.attribute_span(part),
-                        module.source.span(part),
                         symbol.name,
                         module,
                         part,

@@ -29,7 +29,7 @@ class Module:
     resolution: Resolution = field(repr=False)
     is_scenic: bool
     broken: bool
-    _derived: dict[str, Any] = field(default_factory=dict, init=False, repr=False)
+    _derived: dict[object, Any] = field(default_factory=dict, init=False, repr=False)
 
     @property
     def filename(self) -> str:
@@ -133,7 +133,7 @@ class Module:
         """Return whether what is computed under a name is there already."""
         return name in self._derived
 
-    def derived(self, name: str, compute: Callable[[], _T]) -> _T:
+    def derived(self, name: object, compute: Callable[[], _T]) -> _T:
         """The result of a computation from the module, computed on first use and kept under a name."""
         known = self._derived.get(name)
         if known is None:

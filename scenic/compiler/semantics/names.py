@@ -4,7 +4,7 @@ import ast
 import builtins
 from bisect import bisect_left, bisect_right
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import Any, Final
 
@@ -239,17 +239,15 @@ class Names:
             return not (isinstance(name, ast.Name) and self.wildcard)
         return self.stands(binding.name, binding.first_site)
 
-    def provided(self, name: ast.expr | None) -> str | None:
-        """The name that an expression is, if it certainly means what the language provides under that name."""
-        return self._provided.get(name)
+    @cached_property
+    def provided(self) -> Callable[[ast.AST | None], str | None]:
+        """Returns the name that an expression is, if it certainly means what the language provides under that name."""
+        provided: Mapping[ast.AST | None, str] = {} if self.wildcard else self._likely_provided
+        return provided.get
 
     def likely_provided(self, name: ast.expr | None) -> str | None:
         """The name that an expression is, if nothing that is known binds it, but the language provides it."""
         return self._likely_provided.get(name)
-
-    @cached_property
-    def _provided(self) -> Mapping[ast.AST | None, str]:
-        return {} if self.wildcard else self._likely_provided
 
     @cached_property
     def _likely_provided(self) -> Mapping[ast.AST | None, str]:

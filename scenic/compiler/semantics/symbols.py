@@ -4,6 +4,7 @@ import ast
 import re
 from dataclasses import field
 from enum import StrEnum
+from functools import cached_property
 from typing import Any, Final
 
 from scenic.compiler import tree as scenic
@@ -47,24 +48,50 @@ class SymbolKind(StrEnum):
     TYPE_PARAMETER = "type parameter"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, eq=False)
 class Symbol:
     """One thing that has a name.
 
-    ``filename`` and ``span``, the place of the name where it is defined, are ``None`` for what the language provides;
-    ``extent`` is the whole definition. ``container`` is the name of the class, function or scenario that it is in.
-    Two symbols are equal if they are the same thing. ``node`` is the defining node of the tree.
+    ``filename`` is ``None`` for what the language provides. ``container`` is the name of the class, function or scenario
+    that it is in. Two symbols are equal if they are the same thing. ``node`` is the defining node of the tree.
     """
 
     name: str
     kind: SymbolKind
     filename: str | None = None
-    span: Span | None = None
-    extent: Span | None = field(default=None, compare=False)
-    container: str | None = field(default=None, compare=False)
-    module: Module | None = field(default=None, compare=False, repr=False)
-    node: ast.AST | None = field(default=None, compare=False, repr=False)
-    binding: Binding | None = field(default=None, compare=False, repr=False)
+    container: str | None = None
+    module: Module | None = field(default=None, repr=False)
+    node: ast.AST | None = field(default=None, repr=False)
+    binding: Binding | None = field(default=None, repr=False)
+
+    def __eq__(self, other: object) -> bool:
+        if self is other or not isinstance(other, Symbol):
+            return self is other
+        alike = self.name == other.name and self.kind is other.kind and self.filename == other.filename
+        return alike and self.span == other.span
+
+    def __hash__(self) -> int:
+        return hash((self.name, self.kind, self.filename))
+
+    @cached_property
+    def span(self) -> Span | None:
+        """The place of the name where it is defined; ``None`` for what the language provides."""
+        module, node = self.module, self.node
+        if module is None or node is None or isinstance(node, ast.Module):
+            return None if self.filename is None else _ORIGIN
+        is_attribute = isinstance(node, ast.Attribute)
+        return module.attribute_span(node) if is_attribute else module.word_span(node, self.name)
+
+    @cached_property
+    def extent(self) -> Span | None:
+        """The place of the whole definition: of a name the assignment whose target it is."""
+        module, node = self.module, self.node
+        if module is None or node is None:
+            return None
+        if isinstance(node, ast.Module):
+            return Span(1, 0, len(module.source.lines), len(module.source.lines[-1]))
+        statement = None if type(node) in _KINDS else module.assignment_of.get(node)
+        return module.source.span(node) if statement is None else header_span(module.source, statement)
 
     @property
     def is_builtin(self) -> bool:
@@ -142,7 +169,6 @@ def symbol_of_module(found: FoundModule) -> Symbol:
         found.name.rpartition(".")[2],
         SymbolKind.MODULE,
         found.filename,
-        None if found.filename is None else _ORIGIN,
     )
 
 
@@ -162,7 +188,7 @@ def symbol_of_exported(modules: Modules, target: Exported | FoundModule) -> Symb
 
 def symbol_of_binding(module: Module, binding: Binding) -> Symbol:
     """Return the symbol of a binding: its first definition, else the first place where it gets a value."""
-    sites = sorted(binding.sites, key=position)
+    sites = binding.sites if len(binding.sites) == 1 else sorted(binding.sites, key=position)
     node: Any = next((site for site in sites if type(site) in _KINDS), sites[0])
     kind = _kind(node, binding)
     scope = binding.scope
@@ -170,8 +196,6 @@ def symbol_of_binding(module: Module, binding: Binding) -> Symbol:
         binding.name,
         kind,
         module.filename,
-        module.word_span(node, binding.name),
-        module.source.span(node) if type(node) in _KINDS else _statement_span(module, node),
         None if scope.kind is ScopeKind.MODULE else scope.name,
         module,
         node,
@@ -194,12 +218,6 @@ def _kind(node: ast.AST, binding: Binding) -> SymbolKind:
     if binding.kinds == {BindingKind.MODULE}:
         return SymbolKind.MODULE
     return SymbolKind.ATTRIBUTE if binding.scope.kind is ScopeKind.CLASS else SymbolKind.VARIABLE
-
-
-def _statement_span(module: Module, node: ast.AST) -> Span:
-    """Return the assignment that a name is the target of; else the name."""
-    statement = module.assignment_of.get(node)
-    return module.source.span(node) if statement is None else header_span(module.source, statement)
 
 
 def symbols_of(module: Module) -> tuple[Symbol, ...]:
