@@ -79,8 +79,9 @@ class Symbol:
         module, node = self.module, self.node
         if module is None or node is None or isinstance(node, ast.Module):
             return None if self.filename is None else _ORIGIN
-        is_attribute = isinstance(node, ast.Attribute)
-        return module.attribute_span(node) if is_attribute else module.word_span(node, self.name)
+        if isinstance(node, ast.Attribute):
+            return module.attribute_span(node)
+        return module.word_span(node, self.name)
 
     @cached_property
     def extent(self) -> Span | None:

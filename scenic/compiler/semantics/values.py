@@ -201,7 +201,9 @@ class Values:
     def _operation(self, module: Module, node: scenic.Operation, depth: int) -> Value:
         if node.operator == "deg" and node.operands[0] is not None:
             return Value(self.value(module, node.operands[0], depth).kind)
-        return Value(kind_of_type(OPERATORS[node.operator].result)) if node.operator in OPERATORS else _UNKNOWN
+        return (
+            Value(kind_of_type(OPERATORS[node.operator].result)) if node.operator in OPERATORS else _UNKNOWN
+        )
 
     def class_of_objects(self, module: Module, name: ast.expr) -> Class | None:
         """Return the class that an expression certainly names, if it may make objects of the scene."""
