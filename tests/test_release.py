@@ -34,7 +34,7 @@ def test_distributions_are_right_and_work_where_they_are_installed(tmp_path: Pat
     run("-m", "build", "--no-isolation", "--outdir", made, ROOT)
     (wheel,), (source,) = made.glob("*.whl"), made.glob("*.tar.gz")
     run("-m", "twine", "check", "--strict", wheel, source)
-    run("-m", "pip", "install", "-q", "--no-deps", "--no-index", "--target", installed, wheel)
+    run("-m", "pip", "install", "-q", "--no-compile", "--no-deps", "--no-index", "--target", installed, wheel)
     script = tmp_path / "command.py"
     script.write_text(SCRIPT)
     run(script, installed, "new", "started", folder=tmp_path)

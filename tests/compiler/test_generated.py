@@ -16,7 +16,7 @@ ROOT = Path(__file__).resolve().parents[2]
 @pytest.fixture
 def checkout(tmp_path: Path) -> Path:
     """A copy of what a checkout needs for parsing, without generated modules."""
-    ignored = shutil.ignore_patterns("_generated", "__pycache__")
+    ignored = shutil.ignore_patterns("_generated")
     shutil.copytree(ROOT / "grammar", tmp_path / "grammar", ignore=ignored)
     shutil.copytree(ROOT / "scenic" / "compiler", tmp_path / "scenic" / "compiler", ignore=ignored)
     shutil.copytree(ROOT / "scenic" / "language", tmp_path / "scenic" / "language", ignore=ignored)
@@ -54,8 +54,8 @@ def run(checkout: Path, code: str = PARSE) -> str:
     return output + errors
 
 
-def test_missing_and_stale_modules_are_made_again(checkout: Path) -> None:
-    assert run(checkout) == "1\n"
+def test_stale_modules_are_made_again(checkout: Path) -> None:
+    add_modules(checkout)
     folder = checkout / "scenic" / "compiler" / "_generated"
     first = (folder / "tables.py").read_text()
     time = (folder / "parser.py").stat().st_mtime_ns
@@ -68,7 +68,7 @@ def test_missing_and_stale_modules_are_made_again(checkout: Path) -> None:
     assert (folder / "tables.py").read_text() != first
 
 
-def test_several_processes_at_once(checkout: Path) -> None:
+def test_several_processes_make_missing_modules(checkout: Path) -> None:
     processes = [start(checkout, PARSE) for _ in range(2)]
     assert [process.communicate() for process in processes] == [("1\n", "")] * 2
 

@@ -1,7 +1,7 @@
 """Modules of Python as Scenic reads and writes them: tokens, trees with positions, and texts made from trees again.
 
 Modules with a construct that Scenic reads otherwise may have another tree. Each such construct is a rule of
-`python_trees`; what the rules excused is printed. Each commit has a twentieth of the standard library as its share, so
+`python_trees`; what the rules excused is printed. Each commit has a fortieth of the standard library as its share, so
 that all of it is walked in the course of some commits; ``--library all`` walks it all, and some packages besides.
 """
 
@@ -30,7 +30,7 @@ from tests.compiler import python_trees
 from tests.compiler.python_tokens import WORDS, of_tokenize, with_whole_formatted_strings
 
 ROOT = Path(__file__).parents[2]
-PARTS = 20
+PARTS = 40
 SLICES = 4
 STANDARD = Path(sysconfig.get_path("stdlib"))
 PACKAGES = [Path(str(package.__file__)).parent for package in (numpy, scipy, trimesh)]

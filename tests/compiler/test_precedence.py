@@ -147,7 +147,7 @@ def test_a_parser_driven_by_the_table_alone_agrees(temporal: bool) -> None:
     rows = [row for row in (MIXED + TEMPORAL) * 2 + ORDINARY if "new" not in row.words]
     rows = [row for row in rows if ":=" not in row.words and (temporal or not row.temporal)]
     texts: list[str] = []
-    while len(texts) < amount(2000, 4000):
+    while len(texts) < amount(1200, 4000):
         words = random_pattern(chance, rows, chance.randint(1, 7))
         if words.count(None) > 8:
             continue

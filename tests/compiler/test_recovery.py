@@ -259,7 +259,7 @@ MANY = {
 
 @pytest.mark.parametrize("piece", MANY.values(), ids=MANY.keys())
 def test_many_mistakes_take_linear_time(piece: str) -> None:
-    few, many = (calls_while(parse, piece * count) for count in (150, 300))
+    few, many = (calls_while(parse, piece * count) for count in (80, 160))
     assert many < 2.3 * few
 
 

@@ -42,7 +42,7 @@ def split(text: str, **options: Any) -> Estimate:
 
 
 def driven(**options: Any) -> Estimate:
-    wanted = {"rare": True, "seed": 1, "timestep": 0.1, "max_steps": 12, "budget": 620, **options}
+    wanted = {"rare": True, "seed": 1, "timestep": 0.1, "max_steps": 12, "budget": 420, **options}
     wanted.setdefault("minimize", "min(gaps) - 4.6")
     text = f"{BRAKE}\nrecord (distance from ego to lead) as gaps"
     return scenic.estimate(scenic.scenarioFromString(text), "kinematic", **wanted)
@@ -113,7 +113,7 @@ def test_simulations_are_split_the_same_way_in_any_number_of_processes(tmp_path:
     run = kept_run(tmp_path / "kept", moved[-1]["run"])
     text = f"{BRAKE}\nrecord (distance from ego to lead) as gaps"
     assert replay(run, scenic.scenarioFromString(text), "kinematic").departures == []
-    plain = driven(rare=False, budget=None, n=200)
+    plain = driven(rare=False, budget=None, n=100)
     assert result.interval.low < plain.interval.high
     assert plain.interval.low < result.interval.high
 

@@ -41,7 +41,7 @@ def test_a_dead_worker_is_shown_and_its_text_saved(
 
 @pytest.mark.slow
 def test_one_worker_does_what_none_does():
-    budget = Budget(seed=3, programs=8, mutants=4)
+    budget = Budget(seed=3, programs=4, mutants=2)
     reports = []
     for jobs in (0, 1):
         report, died = workers.run(budget, jobs=jobs, on_failure=lambda _failure: None)

@@ -87,12 +87,11 @@ def test_the_number_of_expansions_is_bounded():
     check()
 
 
-@pytest.mark.parametrize(("word", "most"), [("interrupt", 60), ("@", 70)])
-def test_shrinking_ends_in_small_programs(word: str, most: int):
+def test_shrinking_ends_in_small_programs():
     """From the numbers of a program that is always the same, as a run shrinks what it finds."""
     made = ((draws, make_program(draws)) for draws in map(RandomDraws, range(200)))
     choices, found = next(
-        (tuple(draws.choices), [program.text]) for draws, program in made if _has(program, word)
+        (tuple(draws.choices), [program.text]) for draws, program in made if _has(program, "@")
     )
     assert len(found[0]) > 250
 
@@ -105,13 +104,13 @@ def test_shrinking_ends_in_small_programs(word: str, most: int):
     )
     @given(programs())
     def attempt(program: Program) -> None:
-        if _has(program, word):
+        if _has(program, "@"):
             found.append(program.text)
             raise _FoundError
 
     with contextlib.redirect_stdout(io.StringIO()), contextlib.suppress(_FoundError):
         attempt()
-    assert len(found[-1]) <= most, found[-1]
+    assert len(found[-1]) <= 70, found[-1]
 
 
 class _FoundError(Exception):

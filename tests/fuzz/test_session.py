@@ -46,14 +46,6 @@ def test_what_once_failed_is_right_now(entry: corpus.Entry):
         each.holds(case)
 
 
-def lambda_in_a_specifier(case: Case) -> None:
-    for node in ast.walk(case.result.tree):
-        if isinstance(node, scenic.SpecifierPhrase) and any(
-            isinstance(part, ast.Lambda) for part in ast.walk(node)
-        ):
-            raise Violation("there is a lambda in a specifier")
-
-
 def division(case: Case) -> None:
     for node in ast.walk(case.result.tree):
         if isinstance(node, ast.Div):
@@ -71,7 +63,7 @@ def gap(case: Case) -> None:
         raise Violation("there is a gap")
 
 
-PLANTED = tuple(map(Property.of, (lambda_in_a_specifier, division, compose_block)))
+PLANTED = tuple(map(Property.of, (division, compose_block)))
 
 
 @cache
@@ -95,7 +87,6 @@ def test_failures_are_shrunk_to_small_programs_and_each_is_reported_once():
     report = planted_run()
     lengths = {failure.signature.property: len(failure.text) for failure in report.failures}
     assert len(lengths) == len(report.failures)
-    assert lengths["lambda_in_a_specifier"] <= 120
     assert lengths["division"] <= 60
     assert lengths["compose_block"] <= 100
     assert lengths["gap"] <= 80
@@ -172,12 +163,10 @@ def test_the_command_shows_failures_and_saves_them(
 
 @pytest.mark.slow
 def test_workers_share_the_work(capsys: pytest.CaptureFixture[str]):
-    assert (
-        command.main(["--programs", "16", "--mutants", "4", "--seed", "5", "--jobs", "2", "--no-save"]) == 0
-    )
+    assert command.main(["--programs", "6", "--mutants", "4", "--seed", "5", "--jobs", "2", "--no-save"]) == 0
     output = capsys.readouterr().out
     assert "2 workers" in output
-    assert "16 programs" in output
+    assert "6 programs" in output
     assert " 4 mutants" in output
 
 

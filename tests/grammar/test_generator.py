@@ -174,8 +174,8 @@ def test_generation_is_deterministic_and_replaces_whole_files(tmp_path: Path) ->
     generate(path, tmp_path / "new" / "folder")
     names = {each.name for each in (tmp_path / "new" / "folder").iterdir()}
     assert names == {"__init__.py", *(f"{name}.py" for name in MODULES)}
-    before = (tmp_path / "new" / "folder" / "parser.py").read_text()
-    assert before == modules(read_grammar(path))["parser"]
+    made_before = ROOT / "scenic" / "compiler" / "_generated" / "parser.py"  # by another process
+    assert (tmp_path / "new" / "folder" / "parser.py").read_text() == made_before.read_text()
 
 
 def test_a_wrong_grammar_leaves_the_folder_alone(tmp_path: Path) -> None:

@@ -53,7 +53,8 @@ TAILS = [
     "\nq = DiscreteRange(0, 9)\nrequire[0.6] q > 3\nrequire q == 0 or 1 / q > 0.12\n",
     "\nimport random\ndef coin(v): return random.random() < v\nlevel = Range(0.4, 1)\nrequire coin(level)\n",
 ]
-PROGRAMS = [*OWN, *RECORDED[::2], *(text + TAILS[number % 2] for number, text in enumerate(RECORDED))]
+SOME = RECORDED if LONG else RECORDED[::2]
+PROGRAMS = [*OWN, *SOME[::2], *(text + TAILS[number % 2] for number, text in enumerate(SOME))]
 FEW = 4
 
 

@@ -103,7 +103,7 @@ def follow(tree: Tree, trace: list[frozenset[str]]) -> list[Verdict]:
 
 
 def test_verdicts_are_those_of_the_literal_evaluator() -> None:
-    for tree, trace in pairs(amount(8_000, 20_000), 1):
+    for tree, trace in pairs(amount(5_000, 20_000), 1):
         verdicts = follow(tree, trace)
         assert verdicts[-1].name == verdict(tree, trace).name, (tree, trace)
         values = [[1.0 if atom in state else -1.0 for atom in ATOMS] for state in trace]
@@ -113,7 +113,7 @@ def test_verdicts_are_those_of_the_literal_evaluator() -> None:
 
 @pytest.mark.slow
 def test_truth_is_that_of_the_package() -> None:
-    for tree, trace in pairs(amount(8_000, 20_000), 2):
+    for tree, trace in pairs(amount(5_000, 20_000), 2):
         assert bool(follow(tree, trace)[-1]) is of_package(tree, trace), (tree, trace)
 
 
