@@ -116,7 +116,25 @@ PROPERTY_ATTRIBUTES: Final[Mapping[str, str]] = MappingProxyType(
 )
 """Words for the brackets of a property definition."""
 
-_P = BuiltinProperty
+
+def _P(
+    name: str,
+    types: Type | tuple[Type, ...],
+    default: object,
+    documentation: str,
+    needs: tuple[str, ...] = (),
+    *,
+    shown: str = "",
+    **rest: Any,
+) -> BuiltinProperty:
+    """A property; a default that is not words is a constant, which the manual shows as ``shown``."""
+    given = default if isinstance(default, str) else ConstantDefault(default, shown)
+    types = types if isinstance(types, tuple) else (types,)
+    return BuiltinProperty(name, types, given, documentation, needs, **rest)
+
+
+def _method(name: str, result: str, documentation: str) -> Attribute:
+    return Attribute(name, result, documentation, is_method=True)
 
 
 def _words(name: str) -> Type:
@@ -129,110 +147,78 @@ _POINT = BuiltinClass(
     None,
     "A position in space.",
     (
-        _P(
-            "position",
-            (VECTOR,),
-            ConstantDefault((0, 0, 0)),
-            "Global position, in metres.",
-            dynamic=True,
-            unit="m",
-        ),
-        _P(
-            "width",
-            (SCALAR,),
-            ConstantDefault(0),
-            "Extent along the local X axis; points have none.",
-            unit="m",
-        ),
-        _P(
-            "length",
-            (SCALAR,),
-            ConstantDefault(0),
-            "Extent along the local Y axis; points have none.",
-            unit="m",
-        ),
-        _P(
-            "height",
-            (SCALAR,),
-            ConstantDefault(0),
-            "Extent along the local Z axis; points have none.",
-            unit="m",
-        ),
+        _P("position", VECTOR, (0, 0, 0), "Global position, in metres.", dynamic=True, unit="m"),
+        _P("width", SCALAR, 0, "Extent along the local X axis; points have none.", unit="m"),
+        _P("length", SCALAR, 0, "Extent along the local Y axis; points have none.", unit="m"),
+        _P("height", SCALAR, 0, "Extent along the local Z axis; points have none.", unit="m"),
         _P(
             "baseOffset",
-            (VECTOR,),
-            ConstantDefault((0, 0, 0)),
+            VECTOR,
+            (0, 0, 0),
             "The base point, relative to the position, that `on` puts on a surface.",
             unit="m",
         ),
         _P(
             "contactTolerance",
-            (SCALAR,),
-            ConstantDefault(0),
+            SCALAR,
+            0,
             "The small gap that `on` and the directional specifiers leave, in metres.",
             unit="m",
         ),
         _P(
             "onDirection",
             (VECTOR, NONE),
-            ConstantDefault(None),
+            None,
             "The direction in which `on` projects a position onto a surface.",
         ),
         _P(
             "viewAngles",
-            (_words("pair of scalars"),),
-            ConstantDefault((2 * math.pi, math.pi), "(360 deg, 180 deg)"),
+            _words("pair of scalars"),
+            (2 * math.pi, math.pi),
             "Horizontal and vertical angle of view.",
+            shown="(360 deg, 180 deg)",
             unit="rad",
         ),
-        _P("visibleDistance", (SCALAR,), ConstantDefault(50), "Range of the view, in metres.", unit="m"),
+        _P("visibleDistance", SCALAR, 50, "Range of the view, in metres.", unit="m"),
         _P(
             "viewRayDensity",
-            (SCALAR,),
-            ConstantDefault(5),
+            SCALAR,
+            5,
             "Rays per degree, in each dimension, with which visibility is tested.",
         ),
         _P(
-            "viewRayCount",
-            (_words("pair of integers"), NONE),
-            ConstantDefault(None),
-            "Numbers of rays, instead of a density.",
+            "viewRayCount", (_words("pair of integers"), NONE), None, "Numbers of rays, instead of a density."
         ),
         _P(
             "viewRayDistanceScaling",
-            (BOOLEAN,),
-            ConstantDefault(False),
+            BOOLEAN,
+            False,
             "True if more rays are cast towards more distant things.",
         ),
         _P(
             "regionContainedIn",
             (REGION, NONE),
-            ConstantDefault(None),
+            None,
             "The region that must contain it; `None` means the workspace.",
         ),
-        _P(
-            "mutationScale",
-            (SCALAR,),
-            ConstantDefault(0),
-            "Factor of the noise that mutation adds; 0 means none.",
-        ),
+        _P("mutationScale", SCALAR, 0, "Factor of the noise that mutation adds; 0 means none."),
         _P(
             "positionStdDev",
-            (VECTOR,),
-            ConstantDefault((1, 1, 0)),
+            VECTOR,
+            (1, 1, 0),
             "Standard deviation of the noise on the position, per axis.",
             unit="m",
         ),
         _P(
             "mutator",
-            (_words("tuple of mutators"),),
+            _words("tuple of mutators"),
             "a position mutator",
             "What adds the noise.",
             ("positionStdDev",),
             additive=True,
         ),
     ),
-    (Attribute("toVector", "vector", "The position.", is_method=True),),
+    (_method("toVector", "vector", "The position."),),
 )
 
 _ORIENTED_POINT = BuiltinClass(
@@ -242,37 +228,37 @@ _ORIENTED_POINT = BuiltinClass(
     (
         _P(
             "yaw",
-            (SCALAR,),
-            ConstantDefault(0),
+            SCALAR,
+            0,
             "Rotation about the Z axis of the parent orientation, in radians.",
             dynamic=True,
             unit="rad",
         ),
         _P(
             "pitch",
-            (SCALAR,),
-            ConstantDefault(0),
+            SCALAR,
+            0,
             "Rotation about the X axis after the yaw, in radians.",
             dynamic=True,
             unit="rad",
         ),
         _P(
             "roll",
-            (SCALAR,),
-            ConstantDefault(0),
+            SCALAR,
+            0,
             "Rotation about the Y axis after yaw and pitch, in radians.",
             dynamic=True,
             unit="rad",
         ),
         _P(
             "parentOrientation",
-            (ORIENTATION,),
+            ORIENTATION,
             "no rotation",
             "The frame in which yaw, pitch and roll are read.",
         ),
         _P(
             "orientation",
-            (ORIENTATION,),
+            ORIENTATION,
             "parentOrientation turned by yaw, pitch, roll",
             "Global orientation.",
             ("yaw", "pitch", "roll", "parentOrientation"),
@@ -281,7 +267,7 @@ _ORIENTED_POINT = BuiltinClass(
         ),
         _P(
             "heading",
-            (SCALAR,),
+            SCALAR,
             "orientation.yaw",
             "Global yaw, in radians: 0 is North (+Y), growing anticlockwise.",
             ("orientation",),
@@ -291,14 +277,15 @@ _ORIENTED_POINT = BuiltinClass(
         ),
         _P(
             "viewAngle",
-            (SCALAR,),
-            ConstantDefault(2 * math.pi, "360 deg"),
+            SCALAR,
+            2 * math.pi,
             "Horizontal angle of view; the older form of `viewAngles`.",
+            shown="360 deg",
             unit="rad",
         ),
         _P(
             "viewAngles",
-            (_words("pair of scalars"),),
+            _words("pair of scalars"),
             "(viewAngle, 180 deg)",
             "Horizontal and vertical angle of view.",
             ("viewAngle",),
@@ -306,14 +293,15 @@ _ORIENTED_POINT = BuiltinClass(
         ),
         _P(
             "headingStdDev",
-            (SCALAR,),
-            ConstantDefault(math.radians(5), "5 deg"),
+            SCALAR,
+            math.radians(5),
             "Standard deviation of the noise on the yaw.",
+            shown="5 deg",
             unit="rad",
         ),
         _P(
             "orientationStdDev",
-            (VECTOR,),
+            VECTOR,
             "(headingStdDev, 0, 0)",
             "Standard deviations of the noise on yaw, pitch and roll.",
             ("headingStdDev",),
@@ -321,7 +309,7 @@ _ORIENTED_POINT = BuiltinClass(
         ),
         _P(
             "mutator",
-            (_words("tuple of mutators"),),
+            _words("tuple of mutators"),
             "an orientation mutator, then the point's",
             "What adds the noise.",
             ("orientationStdDev",),
@@ -329,25 +317,12 @@ _ORIENTED_POINT = BuiltinClass(
         ),
     ),
     (
-        Attribute("toHeading", "scalar", "The global yaw.", is_method=True),
-        Attribute("toOrientation", "orientation", "The global orientation.", is_method=True),
-        Attribute(
-            "relativize",
-            "oriented point",
-            "The oriented point at an offset given in this frame.",
-            is_method=True,
-        ),
-        Attribute(
-            "relativePosition",
-            "vector",
-            "The global position of an offset given in this frame.",
-            is_method=True,
-        ),
-        Attribute(
-            "distancePast",
-            "scalar",
-            "The distance by which this is ahead of a point, along its heading.",
-            is_method=True,
+        _method("toHeading", "scalar", "The global yaw."),
+        _method("toOrientation", "orientation", "The global orientation."),
+        _method("relativize", "oriented point", "The oriented point at an offset given in this frame."),
+        _method("relativePosition", "vector", "The global position of an offset given in this frame."),
+        _method(
+            "distancePast", "scalar", "The distance by which this is ahead of a point, along its heading."
         ),
     ),
 )
@@ -369,10 +344,10 @@ _OBJECT = BuiltinClass(
     "OrientedPoint",
     "A physical object: a shape with a size, in a place, that collides with others. The base of classes without bases.",
     (
-        _P("shape", (SHAPE,), "BoxShape()", "The form, apart from its size and place."),
+        _P("shape", SHAPE, "BoxShape()", "The form, apart from its size and place."),
         _P(
             "width",
-            (SCALAR,),
+            SCALAR,
             "shape.width",
             "Extent of the bounding box along the local X axis.",
             ("shape",),
@@ -380,7 +355,7 @@ _OBJECT = BuiltinClass(
         ),
         _P(
             "length",
-            (SCALAR,),
+            SCALAR,
             "shape.length",
             "Extent of the bounding box along the local Y axis.",
             ("shape",),
@@ -388,7 +363,7 @@ _OBJECT = BuiltinClass(
         ),
         _P(
             "height",
-            (SCALAR,),
+            SCALAR,
             "shape.height",
             "Extent of the bounding box along the local Z axis.",
             ("shape",),
@@ -396,112 +371,86 @@ _OBJECT = BuiltinClass(
         ),
         _P(
             "present",
-            (BOOLEAN,),
-            ConstantDefault(True),
+            BOOLEAN,
+            True,
             "True if the object is in the scene; random for a random number of objects.",
         ),
-        _P("allowCollisions", (BOOLEAN,), ConstantDefault(False), "True if it may overlap other objects."),
+        _P("allowCollisions", BOOLEAN, False, "True if it may overlap other objects."),
         _P(
             "regionContainedIn",
             (REGION, NONE),
-            ConstantDefault(None),
+            None,
             "The region that must contain it; `None` means the workspace.",
         ),
         _P(
             "baseOffset",
-            (VECTOR,),
+            VECTOR,
             "(0, 0, -height / 2)",
             "The base point that `on` puts on a surface.",
             ("height",),
         ),
         _P(
             "contactTolerance",
-            (SCALAR,),
-            ConstantDefault(1e-4, "1e-4"),
+            SCALAR,
+            1e-4,
             "The small gap that `on` and the directional specifiers leave.",
+            shown="1e-4",
         ),
         _P(
             "sideComponentThresholds",
-            (_words("three pairs of scalars"),),
-            ConstantDefault(((-0.5, 0.5),) * 3, "((-0.5, 0.5),) * 3"),
+            _words("three pairs of scalars"),
+            ((-0.5, 0.5),) * 3,
             "Limits of the components of a normal, per axis, beyond which a face belongs to the surface of a side.",
+            shown="((-0.5, 0.5),) * 3",
         ),
-        _P(
-            "cameraOffset",
-            (VECTOR,),
-            ConstantDefault((0, 0, 0)),
-            "The position of its eye, in its own frame.",
-        ),
+        _P("cameraOffset", VECTOR, (0, 0, 0), "The position of its eye, in its own frame."),
         _P(
             "visionSensorOffset",
-            (VECTOR,),
+            VECTOR,
             "(0, length / 2, 0)",
             "The default position of its vision sensors, in its own frame.",
             ("length",),
         ),
-        _P("requireVisible", (BOOLEAN,), ConstantDefault(False), "True if the ego must see it."),
-        _P("occluding", (BOOLEAN,), ConstantDefault(True), "True if it hides things behind it."),
-        _P("showVisibleRegion", (BOOLEAN,), ConstantDefault(False), "True if pictures show its view volume."),
-        _P(
-            "color",
-            (COLOR, NONE),
-            ConstantDefault(None),
-            "Colour in pictures: red, green, blue, opacity.",
-        ),
-        _P("render", (BOOLEAN,), ConstantDefault(True), "Whether pictures show it."),
+        _P("requireVisible", BOOLEAN, False, "True if the ego must see it."),
+        _P("occluding", BOOLEAN, True, "True if it hides things behind it."),
+        _P("showVisibleRegion", BOOLEAN, False, "True if pictures show its view volume."),
+        _P("color", (COLOR, NONE), None, "Colour in pictures: red, green, blue, opacity."),
+        _P("render", BOOLEAN, True, "Whether pictures show it."),
         _P(
             "velocity",
-            (VECTOR,),
+            VECTOR,
             "(0, speed, 0) turned by orientation",
             "Velocity at the start of a simulation.",
             ("speed", "orientation"),
             dynamic=True,
             unit="m/s",
         ),
-        _P(
-            "speed",
-            (SCALAR,),
-            ConstantDefault(0),
-            "Speed at the start of a simulation.",
-            dynamic=True,
-            unit="m/s",
-        ),
+        _P("speed", SCALAR, 0, "Speed at the start of a simulation.", dynamic=True, unit="m/s"),
         _P(
             "angularVelocity",
-            (VECTOR,),
-            ConstantDefault((0, 0, 0)),
+            VECTOR,
+            (0, 0, 0),
             "Angular velocity at the start of a simulation.",
             dynamic=True,
             unit="rad/s",
         ),
         _P(
             "angularSpeed",
-            (SCALAR,),
-            ConstantDefault(0),
+            SCALAR,
+            0,
             "Angular speed at the start of a simulation.",
             dynamic=True,
             unit="rad/s",
         ),
-        _P(
-            "behavior",
-            (BEHAVIOR, NONE),
-            ConstantDefault(None),
-            "Its behavior in simulations.",
-        ),
+        _P("behavior", (BEHAVIOR, NONE), None, "Its behavior in simulations."),
         _P(
             "lastActions",
-            (_words("tuple of actions"),),
-            ConstantDefault(()),
+            _words("tuple of actions"),
+            (),
             "The actions that it took last; empty while it decides.",
         ),
-        _P("sensors", (_words("dictionary of sensors"),), ConstantDefault({}), "Its sensors by name."),
-        _P(
-            "observations",
-            (_words("dictionary"),),
-            ConstantDefault({}),
-            "The latest observation of each sensor.",
-            final=True,
-        ),
+        _P("sensors", _words("dictionary of sensors"), {}, "Its sensors by name."),
+        _P("observations", _words("dictionary"), {}, "The latest observation of each sensor.", final=True),
     ),
     (
         *(
@@ -531,18 +480,11 @@ _OBJECT = BuiltinClass(
             Attribute(f"{side}Surface", "region", f"The part of the surface on the {side}.")
             for side in _SIDES[0]
         ),
-        Attribute(
-            "intersects", "boolean", "True if it shares a point with an object or region.", is_method=True
-        ),
-        Attribute("containsPoint", "boolean", "True if a point is inside.", is_method=True),
-        Attribute("distanceTo", "scalar", "Distance from the position to a point.", is_method=True),
-        Attribute("canSee", "boolean", "True if it sees a point or an object.", is_method=True),
-        Attribute(
-            "startDynamicSimulation",
-            "None",
-            "Called when the object is created in a simulation.",
-            is_method=True,
-        ),
+        _method("intersects", "boolean", "True if it shares a point with an object or region."),
+        _method("containsPoint", "boolean", "True if a point is inside."),
+        _method("distanceTo", "scalar", "Distance from the position to a point."),
+        _method("canSee", "boolean", "True if it sees a point or an object."),
+        _method("startDynamicSimulation", "None", "Called when the object is created in a simulation."),
     ),
 )
 
