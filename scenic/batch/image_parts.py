@@ -12,17 +12,14 @@ from itertools import chain, groupby
 from pathlib import Path
 from typing import Any, Final
 
-import numpy as np
-
 from scenic.batch.manifest import DatasetError, Manifest, Part
 from scenic.batch.source_files import texts_of
-from scenic.dataclass import dataclass
 from scenic.formats.coco import INDEX, Photographer, index_of
 from scenic.formats.files import Waiting, write, writing
 from scenic.formats.mesh_files import digest_of
 from scenic.formats.mesh_instances import Surfaces
 from scenic.formats.scene_cameras import AbsentCameraError
-from scenic.formats.shards import END, member, members
+from scenic.formats.shards import END, encoded_row, member, members, rows_of
 from scenic.runtime.scenes.scenario import Scenario
 from scenic.runtime.scenes.scene import Scene
 
@@ -92,8 +89,7 @@ class ImageRows:
                 {"id": number * self._most + item["object"] + 1, "image_id": number + 1, **item}
                 for item in shot.annotations
             ]
-        content, record = b"".join(contents), json.dumps([images, annotations], allow_nan=False).encode()
-        return np.array([len(content), len(record)], dtype=np.int64).tobytes() + content + record
+        return encoded_row(b"".join(contents), [images, annotations])
 
 
 def classes_of(scenario: Scenario) -> list[str]:
@@ -103,26 +99,6 @@ def classes_of(scenario: Scenario) -> list[str]:
         categories = texts_of(thing.__dict__.get("category"))
         found |= dict.fromkeys(categories or [type(thing).__name__])
     return list(found)
-
-
-@dataclass(frozen=True, slots=True)
-class _Row:
-    """A row taken apart: the members of its scene, its images in the index and the annotations."""
-
-    content: bytes
-    images: list[dict[str, Any]]
-    annotations: list[dict[str, Any]]
-
-
-def _rows_of(encoded: memoryview) -> Iterator[_Row]:
-    place = 0
-    while place < len(encoded):
-        size, length = (int(word) for word in np.frombuffer(encoded[place : place + 16], dtype=np.int64))
-        place += 16
-        content = bytes(encoded[place : place + size])
-        place += size
-        yield _Row(content, *json.loads(bytes(encoded[place : place + length])))
-        place += length
 
 
 class ImageSink:
@@ -141,15 +117,15 @@ class ImageSink:
 
     def add(self, rows: memoryview) -> None:
         """Write the next rows."""
-        for row in _rows_of(rows):
+        for content, (images, annotations) in rows_of(rows):
             if self._shard is not None:
-                self._shard.write(row.content)
+                self._shard.write(content)
             else:
-                for name, content in members(row.content):
-                    write(self._path.parent / name, content)
-            self._images += row.images
-            self.skipped += len(self._cameras) - len(row.images)
-            self._annotations += row.annotations
+                for name, data in members(content):
+                    write(self._path.parent / name, data)
+            self._images += images
+            self.skipped += len(self._cameras) - len(images)
+            self._annotations += annotations
 
     def finish(self) -> None:
         """Write the index, and the shard."""
@@ -169,9 +145,9 @@ class ImageSink:
 def image_rows(source: Path | bytes, form: str) -> Iterator[dict[str, Any]]:
     """Yield the scenes of a part, or of encoded rows: ``k``, ``images`` and ``annotations`` of the index, and ``content``."""
     if isinstance(source, bytes):
-        for row in _rows_of(memoryview(source)):
-            if row.images:
-                yield _plain(row.images, row.annotations, row.content)
+        for content, (images, annotations) in rows_of(memoryview(source)):
+            if images:
+                yield _plain(images, annotations, content)
         return
     index = _index(source.with_suffix(".json"))
     archive = dict(members(source.read_bytes())) if form == "tar" else {}

@@ -10,12 +10,10 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from scenic.batch.manifest import DatasetError, Manifest, Part
 from scenic.formats.files import make_folder, write
 from scenic.formats.robotics.scene_files import FORMS, scene_files
-from scenic.formats.shards import member, members
+from scenic.formats.shards import encoded_row, member, members, rows_of
 from scenic.runtime.scenes.scenario import Scenario
 from scenic.runtime.scenes.scene import Scene
 
@@ -61,8 +59,7 @@ class SceneFileRows:
             "files": {name: _digest(data) for name, data in own_files.items()},
             "shared": {name: _digest(data) for name, data in files.items() if name not in own_files},
         }
-        record = json.dumps(entry).encode()
-        return np.array([len(content), len(record)], dtype=np.int64).tobytes() + content + record
+        return encoded_row(content, entry)
 
 
 class SceneFileSink:
@@ -76,7 +73,7 @@ class SceneFileSink:
 
     def add(self, rows: memoryview) -> None:
         """Write the next rows."""
-        for content, entry in _rows_of(rows):
+        for content, entry in rows_of(rows):
             for name, data in members(content):
                 target = self._path.parent / name
                 make_folder(target.parent)
@@ -91,21 +88,10 @@ class SceneFileSink:
         """Leave the files that are written: they are complete."""
 
 
-def _rows_of(encoded: memoryview) -> Iterator[tuple[bytes, dict[str, Any]]]:
-    place = 0
-    while place < len(encoded):
-        size, length = (int(word) for word in np.frombuffer(encoded[place : place + 16], dtype=np.int64))
-        place += 16
-        content = bytes(encoded[place : place + size])
-        place += size
-        yield content, json.loads(bytes(encoded[place : place + length]))
-        place += length
-
-
 def scene_file_rows(source: Path | bytes) -> Iterator[dict[str, Any]]:
     """Yield the entries of a part's index, or of encoded rows."""
     if isinstance(source, bytes):
-        yield from (entry for _, entry in _rows_of(memoryview(source)))
+        yield from (entry for _, entry in rows_of(memoryview(source)))
         return
     try:
         yield from json.loads(source.read_bytes())["scenes"]

@@ -24,69 +24,51 @@ from scenic.language.spelling import nearest
 
 __all__ = ["main", "scenic"]
 
-_COMMANDS: Final[Mapping[str, tuple[str, str, str]]] = MappingProxyType(
+_GROUPS: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
     {
-        "new": ("scenic.cli.new", "new", "Make a folder with a program to start from."),
-        "check": ("scenic.cli.check", "check", "Report mistakes in programs, without running them."),
-        "format": ("scenic.cli.format", "format_command", "Format programs in the usual style."),
-        "migrate": ("scenic.cli.migrate", "migrate", "Convert programs of Scenic 2 to Scenic 3."),
-        "try": (
-            "scenic.cli.try_command",
-            "try_command",
-            "Report the phase that programs reach, with all diagnostics.",
-        ),
-        "explain": ("scenic.cli.explain", "explain", "Explain a diagnostic by its code."),
-        "playground": ("scenic.cli.playground", "playground", "Write and sample programs in the browser."),
-        "mcp": ("scenic.cli.mcp_command", "mcp_command", "Serve tools for language models (MCP)."),
-        "grammar": ("scenic.cli.grammar", "grammar", "Show the grammar, for constrained decoding."),
-        "lsp": ("scenic.cli.lsp", "lsp", "Start the language server, for editors."),
-        "sample": ("scenic.cli.sample", "sample", "Sample scenes from a program."),
-        "analyze": (
-            "scenic.cli.analyze",
-            "analyze",
-            "Report the cost of sampling a program, and the places of its objects.",
-        ),
-        "view": ("scenic.cli.view", "view", "Show saved scenes: a page, 3D files, images."),
-        "dataset": ("scenic.cli.dataset", "dataset", "Describe, verify and merge data sets."),
-        "map": ("scenic.cli.map", "map_command", "Show the contents of a road map, or draw it."),
-        "simulate": ("scenic.cli.simulate", "simulate", "Simulate scenes of a program."),
-        "falsify": ("scenic.cli.falsify", "falsify", "Search for scenes and simulations that fail."),
-        "estimate": ("scenic.cli.estimate", "estimate", "Estimate how probable failures are."),
-        "replay": ("scenic.cli.replay", "replay", "Repeat a saved run, and compare it."),
-        "doctor": ("scenic.cli.doctor", "doctor", "Check whether this installation is complete."),
-        "cache": ("scenic.cli.cache", "cache", "Inspect or empty the cache."),
-        "completion": ("scenic.cli.completion", "completion", "Let a shell complete commands and options."),
-        "ast": ("scenic.cli.syntax_tree", "syntax_tree", "Show the syntax tree of a program."),
-        "python": (
-            "scenic.cli.python_code",
-            "python_code",
-            "Show the Python code that a program is compiled to.",
-        ),
-        "preview": ("scenic.cli.preview", "preview", ""),
-    }
-)
-"""By name: module, function in it, and its line in the list of commands; empty for commands that only programs use."""
-
-_GROUPS: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType(
-    {
-        "Write programs": (
-            "new",
-            "check",
-            "try",
-            "format",
-            "migrate",
-            "explain",
-            "playground",
-            "lsp",
-            "mcp",
-            "grammar",
-        ),
-        "Make scenes": ("sample", "analyze", "view", "dataset", "map"),
-        "Run simulations": ("simulate", "falsify", "estimate", "replay"),
-        "Inspect the tools": ("doctor", "cache", "completion", "ast", "python"),
+        "Write programs": {
+            "new": "Make a folder with a program to start from.",
+            "check": "Report mistakes in programs, without running them.",
+            "try": "Report the phase that programs reach, with all diagnostics.",
+            "format": "Format programs in the usual style.",
+            "migrate": "Convert programs of Scenic 2 to Scenic 3.",
+            "explain": "Explain a diagnostic by its code.",
+            "playground": "Write and sample programs in the browser.",
+            "lsp": "Start the language server, for editors.",
+            "mcp": "Serve tools for language models (MCP).",
+            "grammar": "Show the grammar, for constrained decoding.",
+        },
+        "Make scenes": {
+            "sample": "Sample scenes from a program.",
+            "analyze": "Report the cost of sampling a program, and the places of its objects.",
+            "view": "Show saved scenes: a page, 3D files, images.",
+            "dataset": "Describe, verify and merge data sets.",
+            "map": "Show the contents of a road map, or draw it.",
+        },
+        "Run simulations": {
+            "simulate": "Simulate scenes of a program.",
+            "falsify": "Search for scenes and simulations that fail.",
+            "estimate": "Estimate how probable failures are.",
+            "replay": "Repeat a saved run, and compare it.",
+        },
+        "Inspect the tools": {
+            "doctor": "Check whether this installation is complete.",
+            "cache": "Inspect or empty the cache.",
+            "completion": "Let a shell complete commands and options.",
+            "ast": "Show the syntax tree of a program.",
+            "python": "Show the Python code that a program is compiled to.",
+        },
     }
 )
 """The commands as the help lists them."""
+
+_NAMES: Final = (*(name for group in _GROUPS.values() for name in group), "preview")
+"""All commands; `preview` is used by programs alone."""
+
+_MODULES: Final[Mapping[str, str]] = MappingProxyType(
+    {"try": "try_command", "mcp": "mcp_command", "ast": "syntax_tree", "python": "python_code"}
+)
+"""The modules of commands that cannot bear their names; the function in a module is called like it, or ``NAME_command``."""
 
 _EXAMPLES: Final = (
     ("scenic new kitchen --template tabletop", "begin"),
@@ -104,13 +86,14 @@ class _Commands(click.Group):
     """A group whose commands are imported when they are called."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        return list(_COMMANDS)
+        return list(_NAMES)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        if cmd_name not in _COMMANDS:
+        if cmd_name not in _NAMES:
             return None
-        module, function, _ = _COMMANDS[cmd_name]
-        command: click.Command = getattr(import_module(module), function)
+        name = _MODULES.get(cmd_name, cmd_name)
+        module = import_module(f"scenic.cli.{name}")
+        command: click.Command = getattr(module, f"{cmd_name}_command", None) or getattr(module, name)
         return command
 
     def resolve_command(
@@ -119,15 +102,15 @@ class _Commands(click.Group):
         try:
             return super().resolve_command(ctx, args)
         except click.UsageError as error:
-            similar = nearest(args[0], _COMMANDS)
+            similar = nearest(args[0], _NAMES)
             if similar is None:
                 raise
             raise click.UsageError(f"{error.message} Did you mean {similar!r}?", ctx) from None
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        for title, names in _GROUPS.items():
+        for title, commands in _GROUPS.items():
             with formatter.section(title):
-                formatter.write_dl([(name, _COMMANDS[name][2]) for name in names])
+                formatter.write_dl(list(commands.items()))
         with formatter.section("Examples"):
             for command, purpose in _EXAMPLES:
                 formatter.write(f"{'':{formatter.current_indent}}{command}  # {purpose}\n")
@@ -189,8 +172,8 @@ def _run() -> int:
         sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115 - it lasts as long as the process
     arguments = sys.argv[1:]
     global_options = [item for item in arguments if item in GLOBAL]
-    if arguments[:1] not in ([name] for name in _COMMANDS):
-        translation = translated(arguments, list(_COMMANDS))
+    if arguments[:1] not in ([name] for name in _NAMES):
+        translation = translated(arguments, list(_NAMES))
         if translation is not None:
             sys.stderr.write(f"here this is written: scenic {shlex.join([*global_options, *translation])}\n")
             arguments = translation

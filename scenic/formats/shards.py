@@ -4,11 +4,14 @@ A member's bytes depend on its name and content alone: it has no time and no own
 """
 
 import io
+import json
 import tarfile
 from collections.abc import Iterator
-from typing import Final
+from typing import Any, Final
 
-__all__ = ["END", "member", "members"]
+import numpy as np
+
+__all__ = ["END", "encoded_row", "member", "members", "rows_of"]
 
 END: Final = bytes(2 * tarfile.BLOCKSIZE)
 """Two blocks of zeros end a tar file."""
@@ -29,3 +32,19 @@ def members(content: bytes) -> Iterator[tuple[str, bytes]]:
             stream = archive.extractfile(info)
             if stream is not None:
                 yield info.name, stream.read()
+
+
+def encoded_row(content: bytes, entry: object) -> bytes:
+    """Return the row of a scene as processes send it: two lengths, members of a tar file, and its entry of an index as JSON."""
+    record = json.dumps(entry, allow_nan=False).encode()
+    return np.array([len(content), len(record)], dtype=np.int64).tobytes() + content + record
+
+
+def rows_of(encoded: memoryview) -> Iterator[tuple[bytes, Any]]:
+    """Yield the members and the entry of each of some encoded rows."""
+    place = 0
+    while place < len(encoded):
+        size, length = (int(word) for word in np.frombuffer(encoded[place : place + 16], dtype=np.int64))
+        middle = place + 16 + size
+        yield bytes(encoded[place + 16 : middle]), json.loads(bytes(encoded[middle : middle + length]))
+        place = middle + length

@@ -195,6 +195,10 @@ def _fold(function: Callable[[Bounds, Bounds], Bounds], operands: Sequence[Bound
     return result
 
 
+def _fold_bounds(function: Callable[[Bounds, Bounds], Bounds]) -> BoundsReading:
+    return lambda _payload, *operands: _fold(function, operands)
+
+
 def _minimum_inverse(_payload: object, result: Bounds, *operands: Bounds) -> Sequence[Bounds | None]:
     """No operand lies below the minimum; where only one reaches down to it, that one is the minimum."""
     if _fold(intervals.minimum, operands) is None:
@@ -236,53 +240,25 @@ def _orders_vectors(operands: Sequence[Node], _payload: object) -> bool:
 
 
 OPERATIONS = (
-    Operation(
-        "less",
-        always(Kind.BOOLEAN),
-        _order(operator.lt, "<"),
-        "Whether a < b.",
-        python=_truth_of(operator.lt),
-        bounds=_order_bounds(strict=True, swapped=False),
-        inverse=_order_inverse(strict=True, swapped=False),
-        solver=_order_solver(operator.lt),
-        faults=_orders_vectors,
-        stacks=True,
-    ),
-    Operation(
-        "less or equal",
-        always(Kind.BOOLEAN),
-        _order(operator.le, "<="),
-        "Whether a <= b.",
-        python=_truth_of(operator.le),
-        bounds=_order_bounds(strict=False, swapped=False),
-        inverse=_order_inverse(strict=False, swapped=False),
-        solver=_order_solver(operator.le),
-        faults=_orders_vectors,
-        stacks=True,
-    ),
-    Operation(
-        "greater",
-        always(Kind.BOOLEAN),
-        _order(operator.gt, ">"),
-        "Whether a > b.",
-        python=_truth_of(operator.gt),
-        bounds=_order_bounds(strict=True, swapped=True),
-        inverse=_order_inverse(strict=True, swapped=True),
-        solver=_order_solver(operator.gt),
-        faults=_orders_vectors,
-        stacks=True,
-    ),
-    Operation(
-        "greater or equal",
-        always(Kind.BOOLEAN),
-        _order(operator.ge, ">="),
-        "Whether a >= b.",
-        python=_truth_of(operator.ge),
-        bounds=_order_bounds(strict=False, swapped=True),
-        inverse=_order_inverse(strict=False, swapped=True),
-        solver=_order_solver(operator.ge),
-        faults=_orders_vectors,
-        stacks=True,
+    *(
+        Operation(
+            name,
+            always(Kind.BOOLEAN),
+            _order(compare, sign),
+            f"Whether a {sign} b.",
+            python=_truth_of(compare),
+            bounds=_order_bounds(strict="=" not in sign, swapped=">" in sign),
+            inverse=_order_inverse(strict="=" not in sign, swapped=">" in sign),
+            solver=_order_solver(compare),
+            faults=_orders_vectors,
+            stacks=True,
+        )
+        for name, sign, compare in (
+            ("less", "<", operator.lt),
+            ("less or equal", "<=", operator.le),
+            ("greater", ">", operator.gt),
+            ("greater or equal", ">=", operator.ge),
+        )
     ),
     Operation(
         "equal",
@@ -306,26 +282,21 @@ OPERATIONS = (
         solver=lambda terms, payload, a, b: ~_equal_solver(terms, payload, a, b),
         stacks=True,
     ),
-    Operation(
-        "minimum",
-        _extreme_kind,
-        _extreme(operator.lt),
-        "Python's `min` of two or more values, or of the items of one.",
-        python=min,
-        bounds=lambda _payload, *operands: _fold(intervals.minimum, operands),
-        inverse=_minimum_inverse,
-        solver=_extreme_solver(operator.lt),
-        stacks=True,
-    ),
-    Operation(
-        "maximum",
-        _extreme_kind,
-        _extreme(operator.gt),
-        "Python's `max` of two or more values, or of the items of one.",
-        python=max,
-        bounds=lambda _payload, *operands: _fold(intervals.maximum, operands),
-        inverse=_maximum_inverse,
-        solver=_extreme_solver(operator.gt),
-        stacks=True,
+    *(
+        Operation(
+            name,
+            _extreme_kind,
+            _extreme(better),
+            f"Python's `{python.__name__}` of two or more values, or of the items of one.",
+            python=python,
+            bounds=_fold_bounds(fold),
+            inverse=inverse,
+            solver=_extreme_solver(better),
+            stacks=True,
+        )
+        for name, better, python, fold, inverse in (
+            ("minimum", operator.lt, min, intervals.minimum, _minimum_inverse),
+            ("maximum", operator.gt, max, intervals.maximum, _maximum_inverse),
+        )
     ),
 )

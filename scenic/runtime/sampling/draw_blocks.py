@@ -73,40 +73,33 @@ class CheckPiece:
     pairs: tuple[int, ...] = ()
 
 
-def pieces(reads: Reads, checks: Sequence[Check]) -> tuple[list[CheckPiece], list[frozenset[int]]]:
-    """The pieces of checks, and sets of draws in the order in which they are best made: those of objects come first."""
+def pieces(
+    reads: Reads, checks: Sequence[Check], *, coarse: bool = False
+) -> tuple[list[CheckPiece], list[frozenset[int]]]:
+    """The pieces of checks, and sets of draws in the order in which they are best made: those of objects come first.
+
+    If ``coarse``, all pairs of a check of collisions are one piece.
+    """
     units: list[frozenset[int]] = []
     result: list[CheckPiece] = []
     for number, check in enumerate(checks):
-        if isinstance(check, CollisionCheck):
-            below = [reads.of(item.all) for item in check.objects]
-            units = [*below, *units]
-            owners: dict[frozenset[int], list[int]] = {}
-            for pair, (one, other) in enumerate(check.pairs.tolist()):
-                owners.setdefault(below[one] | below[other], []).append(pair)
-            result += [
-                CheckPiece(check.of_pairs(check.pairs[pairs]), read, number, tuple(pairs))
-                for read, pairs in owners.items()
-            ]
-        else:
+        if not isinstance(check, CollisionCheck):
             units.append(reads.of(check.nodes))
             result.append(CheckPiece(check, units[-1], number))
-    return result, units
-
-
-def coarse_pieces(reads: Reads, checks: Sequence[Check]) -> tuple[list[CheckPiece], list[frozenset[int]]]:
-    """The checks as pieces, all pairs of a check of collisions as one, and sets of draws; those of objects come first."""
-    units: list[frozenset[int]] = []
-    result: list[CheckPiece] = []
-    for number, check in enumerate(checks):
-        if isinstance(check, CollisionCheck):
-            below = [reads.of(item.all) for item in check.objects]
-            units = [*below, *units]
+            continue
+        below = [reads.of(item.all) for item in check.objects]
+        units = [*below, *units]
+        if coarse:
             whole = frozenset[int]().union(*below)
             result.append(CheckPiece(check, whole, number, tuple(range(len(check.pairs)))))
-        else:
-            units.append(reads.of(check.nodes))
-            result.append(CheckPiece(check, units[-1], number))
+            continue
+        owners: dict[frozenset[int], list[int]] = {}
+        for pair, (one, other) in enumerate(check.pairs.tolist()):
+            owners.setdefault(below[one] | below[other], []).append(pair)
+        result += [
+            CheckPiece(check.of_pairs(check.pairs[pairs]), read, number, tuple(pairs))
+            for read, pairs in owners.items()
+        ]
     return result, units
 
 

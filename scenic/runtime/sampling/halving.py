@@ -23,7 +23,7 @@ from scenic.dataclass import dataclass
 from scenic.graph.batch import Batch
 from scenic.graph.node import Graph
 from scenic.runtime.sampling.checks import Check, CollisionCheck
-from scenic.runtime.sampling.draw_blocks import CheckPiece, Reads, blocks, coarse_pieces, merged, pieces
+from scenic.runtime.sampling.draw_blocks import CheckPiece, Reads, blocks, merged, pieces
 from scenic.runtime.sampling.engine import Engine, Plan
 
 __all__ = ["Divider", "Joint", "Tree", "any_passes", "may_fault"]
@@ -174,7 +174,7 @@ def _divided(plan: Plan, reads: Reads, batch: Batch, leaf: int, always: bool) ->
     The leaves are numbered from ``leaf``.
     """
     is_large = sum(map(_pairs, plan.checks)) > MOST_PAIRS
-    found_pieces, units = coarse_pieces(reads, plan.checks) if is_large else pieces(reads, plan.checks)
+    found_pieces, units = pieces(reads, plan.checks, coarse=is_large)
     read = frozenset[int]().union(*(piece.read for piece in found_pieces))
     if is_large:
         holds = np.array([_holds(piece.check, batch) for piece in found_pieces])

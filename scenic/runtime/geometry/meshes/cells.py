@@ -7,6 +7,7 @@ import numpy as np
 
 from scenic.runtime.geometry.poses import Floats, Indices
 from scenic.runtime.geometry.ragged import expand, pieces
+from scenic.runtime.geometry.vectors import dot
 
 _CHUNK: Final = 1 << 18
 """Pairs of face and cell looked at together."""
@@ -86,9 +87,7 @@ def _touching(triangles: Floats, face: Indices, index: Indices, resolution: int)
     reach = half * (np.abs(normals[:, 0]) + np.abs(normals[:, 1]) + np.abs(normals[:, 2]))
     centre = (index + 0.5) / resolution - 0.5
     from_corner = centre - triangles[face, 0]
-    n = normals[face]
-    height = n[:, 0] * from_corner[:, 0] + n[:, 1] * from_corner[:, 1] + n[:, 2] * from_corner[:, 2]
-    near = np.flatnonzero(np.abs(height) <= reach[face])
+    near = np.flatnonzero(np.abs(dot(normals[face], from_corner)) <= reach[face])
     return near[_projections_overlap(triangles, edges, face[near], centre[near], half)]
 
 

@@ -13,6 +13,7 @@ from scenic.runtime.geometry.meshes import topology
 from scenic.runtime.geometry.poses import Floats, Indices
 from scenic.runtime.geometry.ragged import distinct, first_of_each
 from scenic.runtime.geometry.store import Arrays, digest_of, kept
+from scenic.runtime.geometry.vectors import dot
 
 _MOST_HEIGHTS: Final = 1 << 21
 """Heights of vertices above faces that are looked at to see that a solid is convex without its hull."""
@@ -213,8 +214,7 @@ class Mesh:
     @cached_property
     def _offsets(self) -> Floats:
         """The negative heights of the faces' planes above the origin, ``(f,)``."""
-        n, p = self.normals, self.triangles[:, 0]
-        return _read_only(-(n[:, 0] * p[:, 0] + n[:, 1] * p[:, 1] + n[:, 2] * p[:, 2]))
+        return _read_only(-dot(self.normals, self.triangles[:, 0]))
 
     @cached_property
     def _is_its_hull(self) -> bool:
@@ -238,7 +238,7 @@ class Mesh:
         face, neighbour_apex = order // 3, apex[opposite]
         offset = self.vertices[neighbour_apex] - self.triangles[face, 0]
         normal = self.normals[face]
-        height = offset[:, 0] * normal[:, 0] + offset[:, 1] * normal[:, 1] + offset[:, 2] * normal[:, 2]
+        height = dot(offset, normal)
         return bool((height > 1e-7 * float(self.extents.max())).any())
 
     @cached_property

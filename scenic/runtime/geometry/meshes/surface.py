@@ -17,6 +17,7 @@ from scenic.runtime.geometry.meshes.bodies import Body
 from scenic.runtime.geometry.meshes.mesh import Mesh
 from scenic.runtime.geometry.poses import Booleans, Floats, Indices, Poses
 from scenic.runtime.geometry.ragged import distinct, rows
+from scenic.runtime.geometry.vectors import cross, dot
 
 Side: TypeAlias = tuple[int, int] | None
 """Axis of the world (0 to 2) and sign, or ``None`` for the whole surface."""
@@ -226,7 +227,7 @@ def mean_normals(body: Body, side: Side, threshold: float, lanes: int) -> Floats
                     chosen_part = columns[axis] * (areas > 0)
                     sums[part, axis] += [np.add.reduce(row) for row in chosen_part]
         sums *= kinds.cofactors
-        length = np.sqrt(sums[:, 0] * sums[:, 0] + sums[:, 1] * sums[:, 1] + sums[:, 2] * sums[:, 2])
+        length = np.sqrt(dot(sums, sums))
         vanishes = length <= _VERTICAL * total
         world_normals = quaternions.rotate(poses.orientation, sums[kind_of])
         result[lanes_of_mesh] = np.where(vanishes[kind_of, None], (0.0, 0.0, 1.0), world_normals)
@@ -280,15 +281,7 @@ def face_orientations(body: Body, faces: Indices) -> Floats:
     level = z[:, 0] * z[:, 0] + z[:, 2] * z[:, 2] <= _VERTICAL * _VERTICAL
     up = np.stack([-z[:, 0] * z[:, 2], -z[:, 1] * z[:, 2], 1 - z[:, 2] * z[:, 2]], axis=1)
     y = _unit(np.where(level[:, None], up, north))
-    x = np.stack(
-        [
-            y[:, 1] * z[:, 2] - y[:, 2] * z[:, 1],
-            y[:, 2] * z[:, 0] - y[:, 0] * z[:, 2],
-            y[:, 0] * z[:, 1] - y[:, 1] * z[:, 0],
-        ],
-        axis=1,
-    )
-    return quaternions.from_axes(x, y, z)
+    return quaternions.from_axes(cross(y, z), y, z)
 
 
 def _unit(vectors: Floats) -> Floats:

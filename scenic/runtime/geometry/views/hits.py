@@ -15,6 +15,7 @@ from scenic.runtime.geometry.meshes.embree import RayScene
 from scenic.runtime.geometry.meshes.facegrid import face_grid
 from scenic.runtime.geometry.meshes.mesh import Mesh
 from scenic.runtime.geometry.poses import Booleans, Floats, Indices
+from scenic.runtime.geometry.vectors import cross, dot, length
 from scenic.runtime.geometry.views.observers import Views
 
 _FEW_FACES: Final = 64
@@ -123,11 +124,11 @@ def box_span(origins: Floats, directions: Floats) -> tuple[Floats, Floats]:
 
 def _quick_first(mesh: Mesh, origins: Floats, directions: Floats, near: Floats) -> Floats:
     """Return the first hits by Embree's faces, `exact_first` where those are in doubt."""
-    length = _length(directions)
+    lengths = length(directions)
     # From where they enter the unit box, so that coordinates stay small.
     starts = origins + np.maximum(near, 0.0)[:, None] * directions
     hits = mesh.derived(ray_scene).first_hits(
-        starts.astype(np.float32), (directions / length[:, None]).astype(np.float32)
+        starts.astype(np.float32), (directions / lengths[:, None]).astype(np.float32)
     )
     result = np.full(len(origins), np.inf)
     hit = np.flatnonzero(hits.triangle >= 0)
@@ -172,40 +173,20 @@ def face_crossings(
     corners = mesh.triangles[faces]
     a = corners[:, 0]
     ab, ac = corners[:, 1] - a, corners[:, 2] - a
-    p = _cross(directions, ac)
-    determinant = _dot(ab, p)
-    scale = _length(directions) * _length(ab) * _length(ac)
+    p = cross(directions, ac)
+    determinant = dot(ab, p)
+    scale = length(directions) * length(ab) * length(ac)
     proper = np.abs(determinant) > _EDGE * scale
     inverse = 1 / np.where(proper, determinant, 1.0)
     offset = origins - a
-    q = _cross(offset, ab)
-    u, v = _dot(offset, p) * inverse, _dot(directions, q) * inverse
+    q = cross(offset, ab)
+    u, v = dot(offset, p) * inverse, dot(directions, q) * inverse
     # What rounding does to u and v grows with the distance to the face and where the ray grazes it.
-    slack = _EDGE * (1 + _length(offset) * scale * np.abs(inverse) / np.maximum(_length(ab), 1e-300))
+    slack = _EDGE * (1 + length(offset) * scale * np.abs(inverse) / np.maximum(length(ab), 1e-300))
     crosses = proper & (u >= -slack) & (v >= -slack) & (u + v <= 1 + slack)
-    return crosses, _dot(ac, q) * inverse
+    return crosses, dot(ac, q) * inverse
 
 
 def ray_scene(mesh: Mesh) -> RayScene:
     """Embree's index of a unit mesh. Get it as ``mesh.derived(ray_scene)``."""
     return RayScene(mesh.triangles)
-
-
-def _dot(a: Floats, b: Floats) -> Floats:
-    result: Floats = a[:, 0] * b[:, 0] + a[:, 1] * b[:, 1] + a[:, 2] * b[:, 2]
-    return result
-
-
-def _length(a: Floats) -> Floats:
-    return np.sqrt(_dot(a, a))
-
-
-def _cross(a: Floats, b: Floats) -> Floats:
-    return np.stack(
-        [
-            a[:, 1] * b[:, 2] - a[:, 2] * b[:, 1],
-            a[:, 2] * b[:, 0] - a[:, 0] * b[:, 2],
-            a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0],
-        ],
-        axis=1,
-    )

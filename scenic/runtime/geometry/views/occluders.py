@@ -8,6 +8,7 @@ import numpy as np
 from scenic.dataclass import dataclass
 from scenic.runtime.geometry.meshes.bodies import Body
 from scenic.runtime.geometry.poses import Booleans, Floats, Indices
+from scenic.runtime.geometry.vectors import dot, length
 from scenic.runtime.geometry.views.hits import Placed, place
 from scenic.runtime.geometry.views.observers import DISTANCE_SLACK, Views
 
@@ -63,7 +64,7 @@ class Obstacles:
                 continue
             poses = occluder.body.poses.take(lanes)
             offset = poses.position - views.camera
-            near = active & _meet_hull(offset, 0.5 * _norm(poses.size), way, radius)
+            near = active & _meet_hull(offset, 0.5 * length(poses.size), way, radius)
             if near.any():
                 self.near.append(occluder)
                 self.lanes.append(near)
@@ -107,16 +108,12 @@ def _meet_hull(offset: Floats, reach: Floats, way: Floats, radius: Floats) -> Bo
     ``offset`` lacks to meet one of them is convex in t, so its least value is where the derivative vanishes, or at
     an end.
     """
-    distance = np.maximum(_norm(way), 1e-300)
-    ahead = (offset[:, 0] * way[:, 0] + offset[:, 1] * way[:, 1] + offset[:, 2] * way[:, 2]) / distance
-    beside = np.sqrt(np.maximum(_norm(offset) ** 2 - ahead * ahead, 0.0))
+    distance = np.maximum(length(way), 1e-300)
+    ahead = dot(offset, way) / distance
+    beside = np.sqrt(np.maximum(length(offset) ** 2 - ahead * ahead, 0.0))
     slope = np.minimum(radius / distance, 1.0)
     rise = np.sqrt(np.maximum(1.0 - slope * slope, 1e-30))
     part = np.clip((ahead + beside * slope / rise) / distance, 0.0, 1.0)
     gap = np.hypot(beside, part * distance - ahead) - part * radius - reach
-    result: Booleans = gap <= 1e-9 * (1.0 + _norm(offset) + distance)
+    result: Booleans = gap <= 1e-9 * (1.0 + length(offset) + distance)
     return result
-
-
-def _norm(rows: Floats) -> Floats:
-    return np.sqrt(rows[:, 0] * rows[:, 0] + rows[:, 1] * rows[:, 1] + rows[:, 2] * rows[:, 2])

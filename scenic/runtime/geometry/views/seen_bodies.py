@@ -16,6 +16,7 @@ from scenic.runtime.geometry.meshes.bodies import Body
 from scenic.runtime.geometry.meshes.mesh import Mesh
 from scenic.runtime.geometry.poses import Booleans, Floats, Indices
 from scenic.runtime.geometry.ragged import first_of_each
+from scenic.runtime.geometry.vectors import length
 from scenic.runtime.geometry.views.grid import Rows, rows_towards
 from scenic.runtime.geometry.views.hits import Placed, place
 from scenic.runtime.geometry.views.observers import (
@@ -124,8 +125,7 @@ def inside_body(placed: Placed) -> Booleans:
 
 def box_distance(origin: Floats, size: Floats) -> Floats:
     """Distances of points ``(n, 3)`` in the unit frame from the box of a size, in metres, ``(n,)``."""
-    gap = (origin - np.clip(origin, -0.5, 0.5)) * size
-    return np.sqrt(gap[:, 0] * gap[:, 0] + gap[:, 1] * gap[:, 1] + gap[:, 2] * gap[:, 2])
+    return length((origin - np.clip(origin, -0.5, 0.5)) * size)
 
 
 def _holds_centre(placed: Placed) -> Booleans:

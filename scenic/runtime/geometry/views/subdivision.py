@@ -20,6 +20,7 @@ from scenic.runtime.geometry.meshes.bodies import Body
 from scenic.runtime.geometry.meshes.voxels import voxels
 from scenic.runtime.geometry.poses import Booleans, Floats, Indices
 from scenic.runtime.geometry.ragged import expand
+from scenic.runtime.geometry.vectors import cross, dot
 from scenic.runtime.geometry.views.hits import Placed
 from scenic.runtime.geometry.views.observers import CORNERS, DISTANCE_SLACK, Extents, Views
 from scenic.runtime.geometry.views.occluders import Occluder
@@ -155,13 +156,13 @@ class _Division:
         middle = cells.middles()
         boxes, distance = self._boxes
         result = np.full(len(cells.lane), np.inf)
-        planes = [_cross(corners[:, k], corners[:, (k + 1) % 4]) for k in range(4)]
+        planes = [cross(corners[:, k], corners[:, (k + 1) % 4]) for k in range(4)]
         for number in range(boxes.shape[1]):
             corner, apart = boxes[cells.lane, number], distance[cells.lane, number]
-            out = (_dots(corner, middle) < 0).all(axis=1)
+            out = (dot(corner, middle[:, None]) < 0).all(axis=1)
             for plane in planes:
                 # Outside of a side by more than rounding.
-                out |= (_dots(corner, plane) > 1e-12).all(axis=1)
+                out |= (dot(corner, plane[:, None]) > 1e-12).all(axis=1)
             out |= apart > self._views.distance[cells.lane] * (1 + DISTANCE_SLACK)
             result = np.where(out, result, np.minimum(result, apart))
         return result
@@ -231,24 +232,3 @@ def _cover(placed: Placed, target: Body, views: Views, lanes: Indices) -> tuple[
 def _direction(azimuth: Floats, altitude: Floats) -> Floats:
     level = np.cos(altitude)
     return np.stack([-np.sin(azimuth) * level, np.cos(azimuth) * level, np.sin(altitude)], axis=-1)
-
-
-def _dots(corners: Floats, direction: Floats) -> Floats:
-    """Corners ``(c, 8, 3)`` along directions ``(c, 3)``, ``(c, 8)``."""
-    result: Floats = (
-        corners[..., 0] * direction[:, None, 0]
-        + corners[..., 1] * direction[:, None, 1]
-        + corners[..., 2] * direction[:, None, 2]
-    )
-    return result
-
-
-def _cross(a: Floats, b: Floats) -> Floats:
-    return np.stack(
-        [
-            a[:, 1] * b[:, 2] - a[:, 2] * b[:, 1],
-            a[:, 2] * b[:, 0] - a[:, 0] * b[:, 2],
-            a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0],
-        ],
-        axis=1,
-    )
