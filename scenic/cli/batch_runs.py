@@ -2,6 +2,7 @@
 
 import signal
 import sys
+import threading
 import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, contextmanager
@@ -30,6 +31,9 @@ __all__ = [
 Advance: TypeAlias = Callable[[int, int], None]
 """Takes how many more results are done, and the candidates that they took."""
 
+_PATIENCE: Final = 5.0
+"""Seconds without a result after which a hint is printed."""
+
 NOT_ALL: Final = 3
 """Exit code: some scenes were not found within the limits."""
 
@@ -48,7 +52,14 @@ def engine_of(jobs: int, dask: str | None) -> "Iterator[Engine | None]":
 
 @contextmanager
 def batch_run(
-    count: int, doing: str, *, jobs: int, dask: str | None, shown: bool, places: Iterable[Path] = ()
+    count: int,
+    doing: str,
+    *,
+    jobs: int,
+    dask: str | None,
+    shown: bool,
+    places: Iterable[Path] = (),
+    hint: str | None = None,
 ) -> "Iterator[tuple[Advance, Engine | None]]":
     """Everything around a batch: locks of its files, the end by a signal, a progress bar, the engine.
 
@@ -59,6 +70,7 @@ def batch_run(
         dask: the address of a cluster to use instead.
         shown: whether there is a progress bar, on a terminal.
         places: single files that nobody else may write meanwhile.
+        hint: what to say on a terminal when nothing has been made for a few seconds; ``None`` for nothing.
 
     """
     with ExitStack() as stack:
@@ -66,7 +78,27 @@ def batch_run(
             stack.enter_context(locked(place))
         stack.enter_context(ended_by_signals())
         advance = stack.enter_context(progress_bar(count, doing, shown=shown))
+        if hint is not None and sys.stderr.isatty():
+            advance = stack.enter_context(_impatient(advance, hint))
         yield advance, stack.enter_context(engine_of(jobs, dask))
+
+
+@contextmanager
+def _impatient(advance: Advance, hint: str) -> Iterator[Advance]:
+    """Print a hint when nothing has been made for `_PATIENCE` seconds."""
+    timer = threading.Timer(_PATIENCE, lambda: sys.stderr.write(f"{hint}\n"))
+    timer.daemon = True
+    timer.start()
+
+    def advance_and_be_quiet(scenes: int, attempts: int) -> None:
+        if scenes:
+            timer.cancel()
+        advance(scenes, attempts)
+
+    try:
+        yield advance_and_be_quiet
+    finally:
+        timer.cancel()
 
 
 @contextmanager

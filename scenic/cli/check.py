@@ -73,6 +73,10 @@ def _selectors(_context: click.Context, option: click.Parameter, given: tuple[st
 @option("--fix", "Make the repairs that are certain, in the files.")
 @option("--diff", "Show these repairs as a patch instead, and change nothing.")
 @option("--deep", "Run the programs, and add what analysis proves about them.")
+@option(
+    "--2d mode_2d",
+    "Run them in the 2D compatibility mode; without --deep they are not run, and it changes nothing.",
+)
 @option("--strict", "Report problems of a part of a road map as errors, not warnings.")
 @option("--config FILE", "Read [tool.scenic] from this file, for all programs.")
 @option("--no-config", "Read no configuration.")
@@ -112,6 +116,7 @@ class _Options:
     fix: bool
     diff: bool
     deep: bool
+    mode_2d: bool
     strict: bool
     config: str | None
     no_config: bool
@@ -195,7 +200,16 @@ def _tasks(
         rules, root = project.rules_for(name, options.select, options.ignore), project.folder or None
         python_path, fixing = project.python_path, options.fixing
         yield CheckTask(
-            name, rules, root, python_path, options.verbose, options.deep, fixing, text, options.strict
+            name,
+            rules,
+            root,
+            python_path,
+            options.verbose,
+            options.deep,
+            fixing,
+            text,
+            options.strict,
+            options.mode_2d,
         )
 
 

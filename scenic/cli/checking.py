@@ -53,6 +53,8 @@ class CheckTask:
     text: str | None = None
     strict: bool = False
     """True if what is wrong with a part of a map is an error."""
+    mode_2d: bool = False
+    """True if `deep` runs the program in the 2D compatibility mode."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,7 +151,7 @@ def _check_map(task: CheckTask) -> tuple[Diagnostic, ...]:
 def _deep(task: CheckTask, source: Source) -> tuple[Diagnostic, ...]:
     from scenic.deep.findings import deep_check  # brings in NumPy, z3 and the geometry libraries
 
-    found = deep_check(task.filename)
+    found = deep_check(task.filename, mode2D=task.mode_2d)
     return apply_ignores(source.text, found, filename=task.filename, complain=False)
 
 

@@ -143,6 +143,8 @@ def replay(
         accept_changes=accept_changes,
     )
     _show(run.number, repetition.about)
+    if repetition.version is not None:
+        print(repetition.version)
     if show_records:
         for name, value in repetition.about.get("records", {}).items():
             print(f"  record {name} = {value}")

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from scenic.batch.engines import Engine
 from scenic.batch.folders.file_digests import digest_of_files, file_digests
@@ -33,6 +33,13 @@ if TYPE_CHECKING:
     from scenic.runtime.scenes.scene import Scene
 
 __all__ = ["sample_into_sinks"]
+
+
+_HINT: Final = (
+    "still looking for the first scene: few candidates meet all requirements. `--approximate` moves single objects instead, which "
+    "finds scenes of crowds in far less time; `scenic analyze` says which requirement costs most"
+)
+"""The words that are printed where scenes take long."""
 
 
 @dataclass(slots=True)
@@ -165,7 +172,14 @@ def sample_into_sinks(
         takers = [stack.enter_context(sink) for sink in chosen]
         put = _to_output if growing_file is None else stack.enter_context(growing_file).write
         batch.advance, batch.engine = stack.enter_context(
-            batch_run(request.count, "sampling", jobs=request.jobs, dask=request.dask, shown=not to_terminal)
+            batch_run(
+                request.count,
+                "sampling",
+                jobs=request.jobs,
+                dask=request.dask,
+                shown=not to_terminal,
+                hint=None if request.approximate else _HINT,
+            )
         )
         batch.advance(done_count, 0)
         if folder is not None:

@@ -30,11 +30,11 @@ _ADVICE: Final = Diagnostic(
 )
 
 
-def deep_check(path: str | Path) -> tuple[Diagnostic, ...]:
-    """Return the faults of a program that running and analysing it finds (no scene is sampled)."""
+def deep_check(path: str | Path, *, mode2D: bool = False) -> tuple[Diagnostic, ...]:
+    """Return the faults of a program that running and analysing it, in the 2D mode or not, finds (no scene is sampled)."""
     filename = str(path)
     try:
-        scenario = load(path, prune=False)
+        scenario = load(path, prune=False, mode2D=mode2D)
     except ScenicSyntaxError as error:
         return error.diagnostics
     except Exception as error:

@@ -76,6 +76,7 @@ class Repetition:
         unknown: what could not be compared, in words.
         page: the text of a page that shows it, where that was wanted and there is something to show.
         pictures: its states as images, likewise.
+        version: in words, where another version of this library has made the run that was kept; else ``None``.
 
     """
 
@@ -84,6 +85,7 @@ class Repetition:
     unknown: list[str] = field(default_factory=list)
     page: str | None = None
     pictures: "StatePictures | None" = None
+    version: str | None = None
 
 
 def kept_run(path: Path, number: int | None = None, *, worst: int | None = None) -> KeptRun:
@@ -235,6 +237,9 @@ def replay(
             repetition = _simulate_again(run, scenario, simulator, shown, Path(folder))
         else:
             repetition = _search_again(run, run.row, scenario, simulator, objectives, shown, Path(folder))
+    before, now = run.origin.get("scenic"), scenario.origin["scenic"]
+    if before != now:
+        repetition.version = f"kept by Scenic {before or 'of an earlier version'}, made again by {now}"
     repetition.departures[:0] = changes
     if run.settings.get("program") != scenario.digest:
         repetition.departures.insert(0, "the program or its parameters have changed since")

@@ -33,14 +33,24 @@ _FRAMED: Final = 24
 """Number of states that the camera is sure to show whole."""
 _SEEN: Final = 30.0
 """Metres to each side that a camera that follows an object shows at least."""
+_WIDE: Final = 25.0
+"""Lengths of the ego between objects up to which a camera that stands still shows all of them."""
+_NEAR: Final = 8.0
+"""Lengths of the ego around it within which others are shown where objects are farther apart."""
+_PALETTE: Final = 8
+"""Images by which the colours of a GIF are chosen."""
 _ACROSS: Final = 3
 """Images beside each other in a sheet."""
+_COLORS: Final = 255
+"""Colours of a GIF, beside the one that says that nothing changes."""
 _SHORTEST: Final = 20
 """Milliseconds of the shortest image that players of GIF show as long as it says."""
 
 
 class StatePictures:
     """The states of a simulation as images; a scene has one state. The camera stands still and shows all states, or follows an object.
+
+    Where objects are far apart on a map, a camera that stands still shows the way of the ego, and what comes near it.
 
     Args:
         scene: the objects and all that is around them.
@@ -96,10 +106,11 @@ class StatePictures:
             FollowError: there is no object to follow.
 
         """
-        framing_states = [self._states[state] for state in evenly(len(self), _FRAMED)]
-        framing_instances = [
-            item for state in (*framing_states, *(self._states[state] for state in states)) for item in state
-        ]
+        framing_states = [self._states[state] for state in (*evenly(len(self), _FRAMED), *states)]
+        framing_instances = [item for state in framing_states for item in state]
+        if outlook.follow is None and getattr(self._scene.workspace, "minimumZoomSize", 0.0) > 0:
+            # There is a map all around.
+            framing_instances = _near_ego(framing_states) or framing_instances
         aspect = size[0] / size[1]
         if outlook.follow is None:
             still = framing(framed(self._scene, framing_instances, outlook), aspect, outlook)
@@ -127,6 +138,22 @@ def _placed(instances: Sequence[Instance], poses: npt.NDArray[np.float64]) -> tu
         for instance, (x, y, z, *turn) in zip(instances, poses.tolist(), strict=True)
         if math.isfinite(x)
     )
+
+
+def _near_ego(states: Sequence[Sequence[Instance]]) -> list[Instance]:
+    """Return the ego and what is near it in some states, where objects are so far apart that all would be tiny; else none."""
+    instances = [item for state in states for item in state]
+    ego = next((item for item in instances if item.is_ego), None)
+    if ego is None:
+        return []
+    length = max(ego.size)
+    if np.ptp([item.position for item in instances], axis=0).max() <= _WIDE * length:
+        return []
+    near: list[Instance] = []
+    for state in states:
+        place = next((item.position for item in state if item.is_ego), None)
+        near += [item for item in state if place and math.dist(item.position, place) <= _NEAR * length]
+    return near
 
 
 def evenly(count: int, most: int) -> list[int]:
@@ -211,7 +238,15 @@ def film_of(
 
 def _gif(images: Iterator[Pixels], states: Sequence[int], timestep: float) -> bytes:
     pillow = require_pillow()
-    frames: list[Any] = [pillow.fromarray(image).quantize(dither=pillow.Dither.NONE) for image in images]
+    pictures: list[Any] = [pillow.fromarray(image) for image in images]
+    # What does not change between two images costs nothing if all have the same colours.
+    samples = [pictures[number] for number in evenly(len(pictures), _PALETTE)]
+    width, height = samples[0].size
+    mosaic = pillow.new("RGB", (width, height * len(samples)))
+    for number, sample in enumerate(samples):
+        mosaic.paste(sample, (0, number * height))
+    palette = mosaic.quantize(_COLORS, dither=pillow.Dither.NONE)
+    frames = [item.quantize(palette=palette, dither=pillow.Dither.NONE) for item in pictures]
     lasting = [1000 * timestep * (after - state) for state, after in pairwise(states)]
     lengths = [max(_SHORTEST, round(item)) for item in (*lasting, *lasting[-1:])] or [_SHORTEST]
     stream = io.BytesIO()

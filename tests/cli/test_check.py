@@ -303,6 +303,16 @@ def test_deep_trees_are_refused_in_words(tmp_path: Path) -> None:
         assert "error[SC112]" in result.stderr
 
 
+def test_deep_runs_programs_in_two_dimensions_if_asked_to(tmp_path: Path) -> None:
+    file = tmp_path / "high.scenic"
+    file.write_text("ego = new Object at (0, 0, Range(2, 3))\nrequire ego.position.z > 2.5\n")
+    assert run("check", "--deep", file).returncode == 0
+    assert run("check", "--2d", file).returncode == 0
+    result = run("check", "--deep", "--2d", file)
+    assert result.returncode == 1
+    assert "line 2" in result.stdout or ":2:1" in result.stdout
+
+
 def test_deep_adds_what_analysis_proves(good: Path) -> None:
     result = run("check", "--deep", "--format", "json", good)
     assert result.returncode == 1, result.stderr

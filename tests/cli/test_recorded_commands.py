@@ -55,6 +55,7 @@ def transcript(source: str) -> str:
         text = "\n".join(said).replace(str(folder), "FOLDER")
     assert str(Path(__file__).parents[2]) not in text, "what is recorded names no place of this machine"
     text = re.sub(r"\b(?=\d*[a-f])[0-9a-f]{16,}\b", "DIGEST", text)
+    text = re.sub(r'("scenic": ?")\d[^"]*"', r'\1VERSION"', text)
     return "\n".join(line.rstrip() for line in text.split("\n"))
 
 

@@ -1,6 +1,7 @@
 """``scenic replay``: runs that were kept, made again."""
 
 import json
+import re
 import shutil
 import webbrowser
 from pathlib import Path
@@ -46,6 +47,15 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
         run_here(["simulate", *common, "-n", 2, "--keep", "all", "-o", "runs"], folder=folder).returncode == 0
     )
     return folder
+
+
+def test_another_version_is_named(place: Path) -> None:
+    shutil.copytree(place / "runs", place / "older")
+    file = place / "older" / "simulation-0000.jsonl"
+    file.write_text(re.sub(r'"scenic":"[^"]+"', '"scenic":"0.0.7"', file.read_text(), count=1))
+    result = run_here(["replay", "older"], folder=place)
+    assert "kept by Scenic 0.0.7, made again by " in result.stdout
+    assert "kept by" not in run_here(["replay", "runs"], folder=place).stdout
 
 
 def test_kept_runs_are_the_same_again(place: Path) -> None:

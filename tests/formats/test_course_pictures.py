@@ -13,6 +13,7 @@ from scenic.formats.course_page import PoseTape
 from scenic.formats.course_pictures import StatePictures, evenly, film_of, sheet
 from scenic.formats.png import png
 from tests.formats.test_course_page import simulated
+from tests.maps import cross
 
 PIL = pytest.importorskip("PIL.Image")
 
@@ -65,6 +66,24 @@ def test_a_scene_is_its_only_state() -> None:
     assert sheet(pictures, evenly(len(pictures), 9), SIZE) == content
 
 
+def test_a_still_camera_on_a_map_shows_the_ego_and_what_is_near_it(tmp_path: Path) -> None:
+    (tmp_path / "cross.xodr").write_text(cross(arm=100))
+    areas = []
+    for other in ("", "new Car at (-95, -1.75), facing -90 deg, with color (0, 0, 1)\n"):
+        text = (
+            "param map = localPath('cross.xodr')\nmodel scenic.domains.driving.model\n"
+            "ego = new Car at (90, 1.75), facing 90 deg, with color (1, 0, 0)\n"
+            f"new Car at (70, 1.75), facing 90 deg, with color (0, 1, 0)\n{other}"
+        )
+        scenario = scenic.scenarioFromString(text, filename=str(tmp_path / "main.scenic"), mode2D=True)
+        (scene,) = scenario.sample(1, seed=1)
+        (image,) = StatePictures(scene).images([0], SIZE, ABOVE)
+        areas.append([len(of_colour(image, channel)) for channel in range(3)])
+    (red, green, _), (red_again, green_again, blue) = areas
+    assert min(red, green) > 20
+    assert (red_again, green_again, blue) == (red, green, 0)
+
+
 @pytest.mark.parametrize(("count", "most"), [(1, 9), (9, 9), (10, 9), (100, 9), (5, 1)])
 def test_numbers_are_spread_evenly(count: int, most: int) -> None:
     found = evenly(count, most)
@@ -93,6 +112,10 @@ def test_films_last_as_long_as_the_simulation(pictures: StatePictures, tmp_path:
             film.seek(frame)
             lengths.append(film.info["duration"])
     assert lengths == [2000] * 5
+    film_of(pictures, states[:1], tmp_path / "one.gif", SIZE, ABOVE)
+    sizes = [(tmp_path / name).stat().st_size for name in ("run.gif", "one.gif")]
+    assert sizes[0] < 3 * sizes[1], "what stands still costs nothing"
+    (tmp_path / "one.gif").unlink()
     ffmpeg = pytest.importorskip("imageio_ffmpeg")
     film_of(pictures, states, tmp_path / "run.mp4", SIZE, ABOVE)
     frames, seconds = ffmpeg.count_frames_and_secs(tmp_path / "run.mp4")

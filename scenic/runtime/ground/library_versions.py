@@ -3,7 +3,7 @@
 from importlib.util import find_spec
 from pathlib import Path
 
-__all__ = ["library_version"]
+__all__ = ["library_version", "own_version"]
 
 
 def library_version(library: str) -> str:
@@ -19,3 +19,13 @@ def library_version(library: str) -> str:
     names = sorted(folder.name for folder in home.glob(f"{library}-*.dist-info"))
     status = file.stat()
     return f"{library} {names} {status.st_size} {status.st_mtime_ns}"
+
+
+def own_version() -> str | None:
+    """Return the version of this library; ``None`` where it is not installed."""
+    from importlib.metadata import PackageNotFoundError, version
+
+    try:
+        return version("scenic-lang")
+    except PackageNotFoundError:
+        return None

@@ -137,7 +137,7 @@ class Approximation:
 
     def __str__(self) -> str:
         summary = (
-            f"approximate: {self.lanes} lanes, effective sample size {self.effective:.0f}, "
+            f"approximate: {self.lanes} scene{'s' * (self.lanes != 1)} made together, effective sample size {self.effective:.0f}, "
             f"log-probability {self.log_probability:.2f}, {self.sweeps} sweeps"
         )
         if self.is_mixed:

@@ -29,6 +29,7 @@ from scenic.runtime.description.declarations import Declared
 from scenic.runtime.description.outcome import Program
 from scenic.runtime.ground.arguments import check_limits, whole_number
 from scenic.runtime.ground.choosable import Choosable
+from scenic.runtime.ground.library_versions import own_version
 from scenic.runtime.instances.objects import Object
 from scenic.runtime.python.samples import dependencies
 from scenic.runtime.regions.base import Region
@@ -516,8 +517,8 @@ class Scenario(Generating):
 
     @property
     def origin(self) -> dict[str, Any]:
-        """The file of the program, and those `options` that are plain data: what it takes to load it again."""
-        return {"file": self.filename, "options": _plain(self.options)}
+        """The file of the program, those `options` that are plain data, and the version of this library: what it takes to load it again."""
+        return {"file": self.filename, "options": _plain(self.options), "scenic": own_version()}
 
     @property
     def fingerprint(self) -> str:

@@ -110,7 +110,7 @@ def test_the_method_is_told(tmp_path: Path) -> None:
     path.write_text(MUGS.format(6))
     done = run_here(["sample", path, "-n", 3, "--seed", 1, "--approximate", 16])
     assert done.returncode == 0, done.stderr
-    assert "approximate: 16 lanes, effective sample size" in done.stderr
+    assert "approximate: 16 scenes made together, effective sample size" in done.stderr
     head, *rows = map(json.loads, done.stdout.splitlines())
     assert len(rows) + 1 >= 3
     assert head.get("points") == "approximate 16"
@@ -121,7 +121,7 @@ def test_the_method_is_told(tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     manifest = json.loads((folder / "manifest.json").read_text())
     assert manifest["points"] == "approximate 16"
-    assert manifest["approximation"].startswith("approximate: 16 lanes")
+    assert manifest["approximation"].startswith("approximate: 16 scenes made together")
     assert run_here(["dataset", "verify", folder]).returncode == 0
     assert run_here(["sample", path, "--approximate", 16, "-j", 2]).returncode == 2
 
