@@ -237,7 +237,7 @@ class Driver:
 
     def _place(self) -> tuple[float, float]:
         """The point of the car that is kept on the path: about which it turns."""
-        x, y, *_ = self._agent.position
+        x, y, _ = self._agent.position.row
         back = self._simulation.pivot_of(self._agent)
         if back:
             heading = self._agent.heading
@@ -261,6 +261,8 @@ class Driver:
             action = RegulatedControlAction(pedal, steering, self._past)
         self._past = action.steer
         return action
+
+    # Limits are compared by hand in what follows, which every car does at every step: calls of `min` and `max` would take a third of the time.
 
     def _pedal(self, share: float) -> float:
         agent = self._agent
@@ -286,15 +288,25 @@ class Driver:
             acceleration = along + _SETTLING * (target_speed - speed)
         if self._gap is not None:
             acceleration = min(acceleration, self._behind(speed, share))
-        acceleration = min(acceleration, self.extra_acceleration(speed, own_place))
-        if acceleration > -_HARD * comfort.deceleration:
+        most = self.extra_acceleration(speed, own_place)
+        if most < acceleration:
+            acceleration = most
+        deceleration = comfort.deceleration
+        if acceleration > -_HARD * deceleration:
             # Jolts are limited; the profile keeps to that, so that this is for what no profile foresees.
-            change = (1.4 if acceleration > -1.2 * comfort.deceleration else 1.7) * comfort.jerk * timestep
-            acceleration = min(max(acceleration, self._acceleration - change), self._acceleration + change)
-        acceleration = min(acceleration, 1.2 * comfort.acceleration)
+            change = (1.4 if acceleration > -1.2 * deceleration else 1.7) * comfort.jerk * timestep
+            low, high = self._acceleration - change, self._acceleration + change
+            if acceleration < low:
+                acceleration = low
+            elif acceleration > high:
+                acceleration = high
+        most = 1.2 * comfort.acceleration
+        if most < acceleration:
+            acceleration = most
         if target_speed < 0.02 and speed < 0.3 and not is_stopping:
             acceleration = min(acceleration, -1.0)
-        self._watch_standing(speed)
+        if speed < _STILL or self.waiting != math.inf:
+            self._watch_standing(speed)
         hardest = self._simulation.acceleration_of(agent, -1.0)
         self._acceleration = max(acceleration, hardest, -speed / timestep)
         return float(self._simulation.pedal_for(agent, acceleration))
@@ -380,7 +392,11 @@ class Driver:
         back = rate * rate * offset + 2 * _DAMPING * rate * math.sin(heading_error)
         square = max(speed, 1.0) ** 2
         most = max(abs(curve), _COMFORTABLE / square)
-        curvature = min(max(curve - back, -most), most)
+        curvature = curve - back
+        if curvature < -most:
+            curvature = -most
+        elif curvature > most:
+            curvature = most
         if self._is_fresh:
             self._is_fresh = False
             self._curvature = min(max(curve, -most), most)
@@ -393,7 +409,11 @@ class Driver:
         if abs(offset) > _FAR:
             change = max(change, _TURNING * timestep)
         self._planned = curve
-        curvature = min(max(curvature, self._curvature - change), self._curvature + change)
+        low, high = self._curvature - change, self._curvature + change
+        if curvature < low:
+            curvature = low
+        elif curvature > high:
+            curvature = high
         self._curvature = curvature
         return float(simulation.steering_for(agent, curvature))
 

@@ -4,14 +4,14 @@ import math
 import os
 from collections import deque
 from copy import copy
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from scenic.language.errors import Located, ScenicTypeError, ScenicValueError
 from scenic.language.spans import Span
 from scenic.runtime.description.declarations import RecordUse
 from scenic.runtime.dynamics.recorders import File, Files, Recorder, for_pattern
 from scenic.runtime.instances.objects import Point
-from scenic.runtime.values.values import describe, is_number
+from scenic.runtime.values.values import Orientation, Vector, describe, is_number
 
 if TYPE_CHECKING:
     from scenic.runtime.dynamics.run import Run
@@ -54,7 +54,9 @@ class Recording:
         name, moment = self.use.name, self.use.moment
         if step < self._delay or step % self._period != 0:
             return
-        value = self._run.evaluated(lambda: _as_it_is(self.use.value(), {}))
+        value = self._run.evaluated(self.use.value)
+        if type(value) not in _FIXED:
+            value = _as_it_is(value, {})
         self.begun = True
         if self._recorder is not None:
             try:
@@ -62,7 +64,11 @@ class Recording:
             except Located as error:
                 error.at((self.use.span, self.use.filename))
                 raise
-        if isinstance(self._recorder, File | Files) and not self._run.keeps_files:
+        if (
+            self._recorder is not None
+            and isinstance(self._recorder, File | Files)
+            and not self._run.keeps_files
+        ):
             if name not in records:
                 records[name] = self._recorder.written
         elif moment is not None:
@@ -87,6 +93,10 @@ class Recording:
         elif not self._ended and self._recorder is not None:
             self._recorder.endRecording(True)
         self._ended = True
+
+
+_FIXED: Final = frozenset({float, int, bool, str, type(None), Vector, Orientation})
+"""Types of values that nothing changes."""
 
 
 def _as_it_is(value: Any, made: dict[int, Any]) -> Any:

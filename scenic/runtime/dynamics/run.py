@@ -371,13 +371,16 @@ class Run:
         for scenario in (self.top, *(each for each in self.scenarios if each is not self.top)):
             if not scenario.records:
                 continue
-            with self.within(scenario):
+            before, self.current, self._creating = (self.current, self._creating), scenario, None
+            try:
                 for recording in scenario.records:
                     if recording.use.moment == "initial" and not recording.begun:
                         recording.add(step, records)
                 for recording in scenario.records:
                     if recording.use.moment is None:
                         recording.add(step, records)
+            finally:
+                self.current, self._creating = before
 
     def finish_records(self, scenario: ScenarioActivation) -> None:
         """A scenario has stopped: its final values, and its files. Those of the top-level scenario come last."""
@@ -433,7 +436,7 @@ class Run:
         self._new_agents = []
         for agent in simulation.agents:
             agent.__dict__["lastActions"] = ()
-        actions_of: dict[int, tuple[Any, ...]] = {}
+        turns: list[tuple[Any, tuple[Any, ...]]] = []
         agents = simulation.agents
         schedule = simulation.scheduleForAgents()
         if schedule is not agents:
@@ -446,15 +449,13 @@ class Run:
                 return None
             # Agents that decide later may look at it.
             agent.__dict__["lastActions"] = tuple(actions)
-            actions_of[id(agent)] = actions
-        # In the order of the agents, whatever the schedule was.
+            turns.append((agent, actions))
+        if schedule is not agents:
+            # In the order of the agents, whatever the schedule was.
+            places = {id(agent): place for place, agent in enumerate(agents)}
+            turns.sort(key=lambda turn: places[id(turn[0])])
         # Agents whose behavior was taken back, as the override that gave it ended, are none any more.
-        taken = ((agent, actions_of.get(id(agent))) for agent in simulation.agents)
-        return {
-            agent: actions
-            for agent, actions in taken
-            if actions or (actions is not None and agent.behavior is not None)
-        }
+        return {agent: actions for agent, actions in turns if actions or agent.behavior is not None}
 
     def _turn(self, agent: Any) -> tuple[Any, ...] | None:
         behavior: Behavior | None = agent.behavior

@@ -127,8 +127,11 @@ class NewtonianSimulation(DrivingSimulation):
 
     def sense(self) -> None:
         """Let cameras see."""
-        self._cameras.deliver(self)
-        super().sense()
+        for obj in self.objects:
+            if obj.sensors:
+                self._cameras.deliver(self)
+                super().sense()
+                return
 
     def place(self, obj: Any, position: Any) -> None:
         """Move an object."""
