@@ -2,7 +2,8 @@
 
 A line shows a map, a target speed (m/s), a time step (s) and, of its runs:
 
-centre, corner  cars whose centre, or a corner, leaves the drivable region; corners where the lane's radius is at least 6 m
+centre, corner  cars whose centre, or a corner, leaves the drivable region; corners where the lane's radius is at least 6 m,
+                once the whole car has been on the region
 tight           cars of which a corner leaves it within 6 m of a sharper bend
 d99, d99str     99th percentile of the distance from the lanes' centerlines, and that on straights, m; where a lane of less than
                 2.5 m opens or closes, from the line nearer to the lane beside on which a car has room

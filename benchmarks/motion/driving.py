@@ -197,10 +197,17 @@ def _car(
     is_ego: bool,
 ) -> str:
     """The program's line of a car that drives along lines from a place on."""
-    line = shapely.LineString(np.concatenate([line_to_drive(lane) for lane in lanes]))
-    along = min(along, line.length - 0.3)
-    place, after = (line.interpolate(item).coords[0] for item in (along, along + 0.2))
-    heading = math.atan2(place[0] - after[0], after[1] - place[1])
+    lines = [line_to_drive(lane) for lane in lanes]
+    line = shapely.LineString(np.concatenate(lines))
+    # On the smooth path, in its direction: what a car makes up for at first is no motion along lanes.
+    path = path_of_lines(lines)
+    x, y = line.interpolate(min(along, line.length - 0.3)).coords[0]
+    index, share, _ = path.locate(x, y, path.nearest(x, y, along))
+    share = min(max(share, 0.0), 1.0)
+    place, heading = (
+        path.place((1 - share) * path.along[index] + share * path.along[index + 1], index),
+        ((1 - share) * path.headings[index] + share * path.headings[index + 1]),
+    )
     return (
         f"{'ego = ' if is_ego else ''}new Car at {place}, facing {heading!r}, with speed {speed}, "
         f"with regionContainedIn None, with allowCollisions True, with requireVisible False, with behavior {behavior}\n"

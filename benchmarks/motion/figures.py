@@ -97,6 +97,8 @@ def figures_of(runs: Sequence[Run], region: Any, spent: float) -> Figures:
         course, lines = run.course, run.lines
         figures.centre += bool((~shapely.contains_xy(region, *course.places.T)).any())
         outside = ~shapely.contains_xy(region, *course.corners().reshape(-1, 2).T).reshape(-1, 4).all(axis=1)
+        # Who is put on the road across its edge has to come from there first.
+        outside[: np.flatnonzero(~outside)[0] if not outside.all() else 0] = False
         indices = lines.indices(course.places)
         excused = lines.within(indices, 6.0, TIGHT)
         figures.corner += bool((outside & ~excused).any())

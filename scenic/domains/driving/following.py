@@ -2,9 +2,11 @@
 
 import math
 from bisect import bisect_right
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from copy import deepcopy
 from typing import Any, Final
+
+import numpy as np
 
 from scenic.domains.driving.actions import RegulatedControlAction, SetSteerAction, Steers
 from scenic.domains.driving.car_following import (
@@ -204,11 +206,26 @@ class Driver:
         speed: float,
         duration: float = 0.0,
         near: float | None = None,
-        pace: Pace | None = None,
+        speeds: Callable[[int], Sequence[float]] | None = None,
     ) -> float:
-        """Bend a path so that the car joins it at a speed, from its present curvature; see `join`."""
+        """Bend a path so that the car joins it at a speed, from its present curvature; see `join`.
+
+        The speeds that are planned from a point of the path on, if given, are those of the car on its way.
+        """
+        place = self._place()
+
+        def pace() -> Pace:
+            assert speeds is not None
+            begin, _, _ = path.locate(*place, path.nearest(*place, near))
+            along, planned = np.array(path.along[begin:]), np.array(speeds(begin))
+            own = path.along_at(*place, begin)
+            ahead = along > own
+            now = np.interp(own, along, planned)
+            return Pace.planned(np.append(0.0, along[ahead] - own), np.append(now, planned[ahead]))
+
         curvature = None if self._is_fresh else self._curvature
-        return join(path, self._place(), self._agent.heading, speed, duration, near, curvature, pace)
+        heading = self._agent.heading
+        return join(path, place, heading, speed, duration, near, curvature, None if speeds is None else pace)
 
     # Controllers that programs ask for
 

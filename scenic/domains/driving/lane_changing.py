@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from scenic.dataclass import dataclass
 from scenic.domains.driving.car_following import Gap
 from scenic.domains.driving.elements import Lane, LaneSection
-from scenic.domains.driving.lane_driving import LaneDriver, junctions_of, turned_from
+from scenic.domains.driving.lane_driving import LaneDriver, turned_from
 from scenic.domains.driving.paths import Path
-from scenic.domains.driving.planning import MotionPlan, Pace, speeds_of
+from scenic.domains.driving.planning import MotionPlan
 from scenic.domains.driving.speed_profiles import Comfort
 from scenic.language.errors import InvalidScenarioError
 from scenic.runtime.values.describing import wrong_type
@@ -163,10 +163,10 @@ class LaneChanger(LaneDriver):
         path, stops = plan.path, self._stops(plan)
         x, y = self._place()
         begin, _, _ = path.locate(x, y, path.nearest(x, y, near))
-        pace = self._pace_on(path, begin, stops)
+        speeds, _ = self._profile(path, begin, stops)
         for share in _SHARES:
             bent = path.copy()
-            distance = self._join(bent, self._agent.speed, share * time, near, pace)
+            distance = self._join(bent, self._agent.speed, share * time, near, lambda _: speeds)
             beside = self._beside_road(bent, path, begin, distance)
             is_comfortable = beside <= 0.0 and self._is_comfortable(bent, begin, distance, stops)
             yield _Way(bent, distance, beside, is_comfortable)
@@ -184,29 +184,6 @@ class LaneChanger(LaneDriver):
         rate = (speeds[1:] + speeds[:-1]) / 2 / np.diff(along)
         jolts = np.hypot(np.diff(side) * rate, np.diff(changes[: end - begin]) * rate)
         return bool(jolts.max() <= _JOLT)
-
-    def _profile(self, path: Path, begin: int, stops: float | None) -> tuple[list[float], list[float]]:
-        """Speeds and accelerations of the car at the points of a path from an index on."""
-        return speeds_of(
-            path,
-            begin,
-            self._target,
-            self._agent.speed,
-            self.comfort,
-            limits=None,
-            stops=stops,
-            acceleration=self._acceleration,
-            junctions=junctions_of(path),
-        )
-
-    def _pace_on(self, path: Path, begin: int, stops: float | None) -> Pace:
-        """The pace of the car along a path by its speed profile."""
-        x, y = self._place()
-        along, speeds = np.array(path.along[begin:]), np.array(self._profile(path, begin, stops)[0])
-        place = path.along_at(x, y, begin)
-        ahead = along > place
-        now = np.interp(place, along, speeds)
-        return Pace.planned(np.append(0.0, along[ahead] - place), np.append(now, speeds[ahead]))
 
     def _beside_road(self, bent: Path, path: Path, begin: int, distance: float) -> float:
         """Metres by which the car leaves the road where it joins a path, beyond what it leaves it by now, or on the path."""

@@ -2,7 +2,7 @@
 
 import math
 from bisect import bisect_left
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 from typing import Any, Final
 
@@ -15,7 +15,7 @@ from scenic.domains.driving.elements import Lane
 from scenic.domains.driving.following import Driver
 from scenic.domains.driving.kinds import ManeuverType
 from scenic.domains.driving.paths import Path
-from scenic.domains.driving.planning import MotionPlan, path_of_lines
+from scenic.domains.driving.planning import MotionPlan, path_of_lines, speeds_of
 from scenic.domains.driving.speed_profiles import Comfort
 from scenic.domains.driving.trajectories import Route
 from scenic.runtime.program.builtins import running_simulation
@@ -170,8 +170,28 @@ class LaneDriver(Driver):
 
     def _join_plan(self) -> bool:
         """Bend the path of the plan so that the car joins it; return false if another plan has been taken instead."""
-        self.joining = self._join(self._plan.path, self._pace(), self._joining_time, self._near)
+        path = self._plan.path
+        self.joining = self._join(path, self._pace(), self._joining_time, self._near, self._planned_on(path))
         return True
+
+    def _planned_on(self, path: Path) -> Callable[[int], list[float]]:
+        """The speeds that are planned on a path of the plan from one of its points on."""
+        stops = self._stops(self._plan)
+        return lambda begin: self._profile(path, begin, stops)[0]
+
+    def _profile(self, path: Path, begin: int, stops: float | None) -> tuple[list[float], list[float]]:
+        """Speeds and accelerations of the car at the points of a path from an index on, without regard of further limits."""
+        return speeds_of(
+            path,
+            begin,
+            self._target,
+            self._agent.speed,
+            self.comfort,
+            limits=None,
+            stops=stops,
+            acceleration=self._acceleration,
+            junctions=junctions_of(path),
+        )
 
     def _stops(self, plan: MotionPlan) -> float | None:
         """Metres before the end of the path of a plan at which the car stops; ``None`` while it goes on."""
@@ -239,7 +259,7 @@ class LaneDriver(Driver):
             if under is not None and lane is None:
                 self._begin_plan(under)
                 return
-        self._join(self._path, self._agent.speed, near=near)
+        self._join(self._path, self._agent.speed, near=near, speeds=self._planned_on(self._path))
         self._index = index
         path, self._path = self._path, Path()
         self._plan.path = path
@@ -296,11 +316,19 @@ class RouteDriver(Driver):
     def _start(self) -> None:
         path = path_of_lines(self._route.lines, self.tightest)
         path.lanes, self._last = lanes_along(path, self._route.parts, self._route.lines)
-        self._join(path, self._agent.speed)
         limits, target = self._limits(path), self._target
         if self._route.speeds is not None:
             target = math.inf
-        self.set_path(path, target, limits=limits, junctions=junctions_of(path))
+        speed, junctions = self._agent.speed, junctions_of(path)
+
+        def planned(begin: int) -> list[float]:
+            profile = speeds_of(
+                path, begin, target, speed, self.comfort, limits=limits, stops=None, junctions=junctions
+            )
+            return profile[0]
+
+        self._join(path, speed, speeds=planned)
+        self.set_path(path, target, limits=limits, junctions=junctions)
 
     def _limits(self, path: Path) -> Any:
         limits = np.full(len(path.along), math.inf)

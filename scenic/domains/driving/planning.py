@@ -1,7 +1,7 @@
 """Plans of drivers: a path ahead, made longer as the car goes on, and the speeds on it."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, Final
 
 import numpy as np
@@ -27,6 +27,8 @@ _PULL: Final = 0.5
 """Lateral acceleration (m/s^2) by which the car would leave the path, with its steering wheel as it is, from which it does."""
 _SHARPEST: Final = 0.2
 """Curvature (1/m) of curves by which a car joins a path."""
+_SHORTEST: Final = 6.0
+"""Metres that a car takes to join a path on which it stops sooner."""
 _SLOW: Final = 4.0
 """Speed (m/s) at which times along a path are computed where a car is slower: it bends its way no more than this lets it."""
 
@@ -115,10 +117,14 @@ class Pace:
         along: metres ``(n,)`` ahead of the car; the first are 0.
         speeds: there ``(n,)``, m/s, all positive.
 
+    Attributes:
+        end: metres ahead where the car stops.
+
     """
 
     def __init__(self, along: Floats, speeds: Floats) -> None:
         self._along, self._speeds = along, speeds
+        self.end = math.inf
         means = (speeds[1:] + speeds[:-1]) / 2
         self._moments = np.concatenate([[0.0], np.cumsum(np.diff(along) / means)])
         self._changes = np.gradient(speeds, along) if len(along) > 1 else np.zeros(len(along))
@@ -126,7 +132,11 @@ class Pace:
     @classmethod
     def planned(cls, along: Floats, speeds: Floats) -> "Pace":
         """The pace by a speed profile; of a car that is slow, what it would be a little faster."""
-        return cls(along, (speeds**4 + _SLOW**4) ** 0.25)
+        pace = cls(along, (speeds**4 + _SLOW**4) ** 0.25)
+        standing = np.flatnonzero(speeds[1:] <= 0.0)
+        if len(standing):
+            pace.end = float(along[standing[0] + 1])
+        return pace
 
     def way(self, time: float) -> float:
         """Metres that the car goes in seconds."""
@@ -151,7 +161,7 @@ def join(
     duration: float = 0.0,
     near: float | None = None,
     curvature: float | None = None,
-    pace: Pace | None = None,
+    pace: Callable[[], Pace] | None = None,
 ) -> float:
     """Bend a path so that it begins where a car is, in the direction of the car: a lateral offset of least jerk.
 
@@ -166,7 +176,7 @@ def join(
         duration: seconds that the car takes at least; 0 for as few as comfort allows.
         near: metres along the path about which the car is.
         curvature: of the way of the car, in 1/m, positive to the left; that of the path by default.
-        pace: of the car on its way; its present speed by default.
+        pace: computes that of the car on its way; its present speed by default.
 
     Returns:
         Metres along the path until the car is on it.
@@ -195,13 +205,15 @@ def join(
     time = max(time, min(1.3 * pull, 2.0))
     if pace is None:
         even = max(speed, 4.0 / time, 6.0 * abs(offset) ** 0.5 / time)
-        pace = Pace(np.array([0.0]), np.array([even]))
+        going = Pace(np.array([0.0]), np.array([even]))
+    else:
+        going = pace()
     along, curvatures = np.array(path.along), np.array(path.curvatures)
     start = along[index] + share * (along[index + 1] - along[index])
-    left = along[-1] - start
-    bends, least = _Offset(pace, time, offset, slope, bend), math.inf
+    left = min(along[-1] - start, max(going.end, _SHORTEST))
+    bends, least = _Offset(going, time, offset, slope, bend), math.inf
     for attempt in range(9):
-        longer = _Offset(pace, 1.3**attempt * time, offset, slope, bend)
+        longer = _Offset(going, 1.3**attempt * time, offset, slope, bend)
         count = int(np.searchsorted(along, start + longer.distance, side="right"))
         if longer.distance >= left or count - index < 6:
             break
@@ -213,7 +225,7 @@ def join(
         if sharpest <= max(_SHARPEST, 1.05 * known):
             break
     if bends.distance > max(left, 1.0):
-        bends = _Offset(pace, float(pace.at(np.array([max(left, 1.0)]))[0][0]), offset, slope, bend)
+        bends = _Offset(going, float(going.at(np.array([max(left, 1.0)]))[0][0]), offset, slope, bend)
     count = int(np.searchsorted(along, start + bends.distance, side="right"))
     # The path bends to where it was behind the car, where nobody looks at its curvature.
     begin = max(0, index - 8)
