@@ -95,13 +95,13 @@ class Climber:
         self._memo: dict[tuple[int, Ladder, int, tuple[str, ...]], Parsed | None] = {}
 
     def whole(self, ladder: Ladder) -> "Tree | None":
-        """The tree of the whole text as an operand of the loosest level."""
+        """Return the tree of the whole text as an operand of the loosest level."""
         top = Slot(ladder, min(LADDERS[ladder].values()), (), None)
         found = self.operand(0, top)
         return found.tree if found is not None and self.words[found.end] == "NEWLINE" else None
 
     def operand(self, at: int, slot: Slot) -> Parsed | None:
-        """The operand that starts at a token."""
+        """Return the operand that starts at a token."""
         key = (at, slot.ladder, slot.level, slot.also)
         if key not in self._memo:
             self._memo[key] = self._operand(at, slot)

@@ -18,7 +18,7 @@ __all__ = ["Coverage", "Share", "all_choices", "trace"]
 
 @cache
 def all_choices() -> frozenset[Choice]:
-    """All that a program may do: use an alternative, or have one of its optional or repeated parts in some form."""
+    """Return all choices of a program: to use an alternative, or to have one of its optional or repeated parts in some form."""
     return frozenset(choices(derivations().grammar))
 
 

@@ -174,7 +174,7 @@ class Derivations:
         return AlternativeId(rule, candidates[0])
 
     def alternative(self, identity: AlternativeId) -> Alternative:
-        """The alternative of the grammar with this identity."""
+        """Return the alternative of the grammar with this identity."""
         return self._alternatives[identity]
 
     # Options.
@@ -255,7 +255,7 @@ class Derivations:
         return self._heights[rule]
 
     def item_height(self, item: Item) -> int:
-        """The height that an item needs if it is there; that of a token is 0."""
+        """Return the height that an item needs if it is there; that of a token is 0."""
         match item:
             case Reference():
                 return self._heights.get(item.rule, 0)
@@ -301,7 +301,7 @@ class Derivations:
 
 
 def load() -> Derivations:
-    """The derivations of ``grammar/scenic.gram``."""
+    """Return the derivations of ``grammar/scenic.gram``."""
     narrowing = (_HERE / "narrowing.gram").read_text(encoding="utf-8")
     return Derivations(
         read_grammar(_HERE.parent / "grammar" / "scenic.gram"),

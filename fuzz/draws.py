@@ -26,7 +26,7 @@ class Draws(Protocol):
         """A number from 0 to ``below - 1``. Smaller ones should mean simpler things: shrinking leads to them."""
 
     def part(self, make: Callable[[str], _Made], rule: str) -> _Made:
-        """``make(rule)``, as a part of its own: shrinking tries to leave out parts, or to put one for another."""
+        """Return ``make(rule)`` as a separate part: shrinking tries to leave out parts, or to replace one by another."""
 
 
 class RandomDraws:
@@ -81,7 +81,7 @@ def _part(draw: DrawFn, make: Callable[[str], _Made], rule: str) -> _Made:
 
 
 def replayed(choices: Sequence[int]) -> ExampleDatabase:
-    """A database of one example: with it and `hypothesis.Phase.reuse`, a test begins with these choices."""
+    """Return a database of one example: with it and `hypothesis.Phase.reuse`, a test begins with these choices."""
     return _Replay(choices_to_bytes(choices))
 
 

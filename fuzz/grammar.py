@@ -68,7 +68,7 @@ _LINES: Final = frozenset({"statement", "class_item", "simple_statements", "open
 
 
 def from_grammar(rule: str = "file", *, limits: Limits = Limits()) -> SearchStrategy[str]:
-    """Texts that ``rule`` of the grammar derives; those of the rule ``file`` are programs.
+    """Return a strategy for texts that ``rule`` of the grammar derives; those of the rule ``file`` are programs.
 
     Raises `KeyError` if there is no such rule.
     """
@@ -78,7 +78,7 @@ def from_grammar(rule: str = "file", *, limits: Limits = Limits()) -> SearchStra
 def programs(
     rule: str = "file", *, limits: Limits = Limits(), aims: Sequence[AlternativeId] | None = None
 ) -> SearchStrategy[Program]:
-    """As `from_grammar`, with what the text was made of.
+    """Return a strategy for the texts of `from_grammar` together with what they were made of.
 
     Three of four programs are led to one of the alternatives ``aims`` each, by default one of all.
     """

@@ -126,7 +126,7 @@ def _left_over(folder: Path) -> Iterator[Path]:
 
 
 def not_compiler() -> Iterator[str]:
-    """The modules of the package that are not to be instrumented; atheris chooses packages by their first name only."""
+    """Yield the modules of the package that are not to be instrumented; atheris chooses packages by their first name only."""
     package = Path(__file__).resolve().parents[1] / "scenic"
     for path in package.rglob("*.py"):
         name = ".".join(path.relative_to(package.parent).with_suffix("").parts).removesuffix(".__init__")

@@ -86,7 +86,7 @@ def _style(choice: random.Random) -> _Style:
 
 
 def lay_out(pieces: Sequence[Piece], *, seed: int = 0) -> str:
-    """The text of a row of tokens. Seed 0 gives plain text; others vary all that has no meaning."""
+    """Write a row of tokens as text. Seed 0 gives plain text; others vary all that has no meaning."""
     choice = random.Random(seed)
     style = _style(choice) if seed else _Style()
     writer = _Writer(style, choice)

@@ -147,7 +147,7 @@ def _changed(original: str, text: str) -> tuple[int, int]:
 
 
 def mutated(texts: SearchStrategy[str], *, most: int = _MOST) -> SearchStrategy[Mutant]:
-    """Texts with one to ``most`` mutations each; parts are taken from other texts of the same strategy."""
+    """Return a strategy for texts with one to ``most`` mutations each; parts are taken from other texts of the same strategy."""
 
     @st.composite
     def mutant(draw: DrawFn) -> Mutant:

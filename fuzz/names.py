@@ -138,7 +138,7 @@ def roles_of(option: Option, nodes: frozenset[str], count: int) -> Sequence[Role
 
 
 def role_given(option: Option, rule: str) -> Role | None:
-    """The role that an option gives to the first name of a rule that it refers to."""
+    """Return the role that an option gives to the first name of a rule that it refers to."""
     if option.rule == "dotted_alias" and len(option.items) > 1:
         return Role.MODULE
     return _OF_REFERENCES.get((option.rule, rule))

@@ -143,7 +143,7 @@ def _reads_ego(alternative: Alternative) -> bool:
 
 
 def properties_given(alternative: Alternative) -> frozenset[str]:
-    """The properties that a specifier gives, and its own name, which may be there but once."""
+    """Return the properties that a specifier gives, and its own name, which may occur only once."""
     found = re.search(r'specifier="([^"]+)"', _tight(alternative))
     if found is None or found[1] not in SPECIFIERS or found[1] == "with":
         return frozenset()
@@ -151,7 +151,7 @@ def properties_given(alternative: Alternative) -> frozenset[str]:
 
 
 def nodes_of(alternative: Alternative) -> frozenset[str]:
-    """The words of an alternative's action, among them the nodes that it makes."""
+    """Return the words of an alternative's action, among them the nodes that it makes."""
     return frozenset(re.findall(r"\w+", alternative.action or ""))
 
 
@@ -241,19 +241,19 @@ def demand_of(option: Option, nodes: frozenset[str]) -> Demand | None:
 
 
 def all_of(demands: Sequence[Demand]) -> Demand | None:
-    """All demands in one; ``None`` if there are none."""
+    """Join all demands in one; ``None`` if there are none."""
     if len(demands) < 2:
         return demands[0] if demands else None
     return lambda around: all(demand(around) for demand in demands)
 
 
 def within(step: Step, demand: Demand) -> Demand:
-    """Met if ``demand`` is met inside of ``step``."""
+    """Return a demand that is met if ``demand`` is met inside of ``step``."""
     return lambda around: demand(enter(around, step))
 
 
 def any_of(demands: Sequence[Demand]) -> Demand:
-    """Met if one of the demands is."""
+    """Return a demand that is met if one of the demands is."""
     return lambda around: any(demand(around) for demand in demands)
 
 

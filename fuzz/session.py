@@ -118,7 +118,7 @@ class _Failed(Exception):
 
 
 def signature_of(name: str, error: BaseException) -> Signature:
-    """The signature of the exception that a property raised."""
+    """Return the signature of the exception that a property raised."""
     if isinstance(error, Violation):
         # The first words of the message, without places and what is quoted of the text.
         first, _, _ = str(error).partition("\n")
@@ -285,7 +285,7 @@ def _mutant(case: Case) -> Mutant | None:
 def shrink(
     failure: Failure, broken: Property, again: Callable[[Draws], Sample], choices: Sequence[int]
 ) -> Failure:
-    """The same failure with as short a text as Hypothesis finds, starting with the one made from ``choices``."""
+    """Return the same failure with as short a text as Hypothesis finds, starting with the one made from ``choices``."""
     failures = [failure]
     until = time.monotonic() + _LONGEST
     endless = failure.signature.exception == TookTooLongError.__name__

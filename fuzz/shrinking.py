@@ -17,7 +17,7 @@ _MOST: Final = 2000
 
 
 def shrunk(text: str, fails: Callable[[str], bool], *, most: int = _MOST) -> str:
-    """A part of ``text`` for which ``fails`` holds as it does for ``text``, after trying at most ``most`` others."""
+    """Return a part of ``text`` for which ``fails`` holds as it does for ``text``, after trying at most ``most`` others."""
     budget = most
 
     def still_fails(candidate: str) -> bool:

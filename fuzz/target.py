@@ -30,7 +30,7 @@ _SLOW: Final = 10.0
 
 
 def text_of(data: bytes) -> str:
-    """The text of some bytes, as in the corpus; bytes that are not UTF-8 become question marks."""
+    """Return the text of some bytes, as in the corpus; bytes that are not UTF-8 become question marks."""
     try:
         return data.decode("utf-8", "surrogatepass")
     except UnicodeDecodeError:
@@ -49,7 +49,7 @@ def seeds() -> Iterator[str]:
 
 
 def dictionary() -> str:
-    """All keywords and operators, as libFuzzer reads them."""
+    """Write all keywords and operators as libFuzzer reads them."""
     words = sorted({*HARD_KEYWORDS, *SOFT_KEYWORDS, *OPERATORS})
     return "".join(f'"{word}"\n' for word in words)
 
@@ -121,7 +121,7 @@ class Mutator:
         self._texts = texts
 
     def __call__(self, data: bytes, greatest: int, seed: int) -> bytes:
-        """Changed bytes, at most ``greatest``."""
+        """Return changed bytes, at most ``greatest``."""
         draw = random.Random(seed)
         if draw.random() < 0.5:
             return self._of_bytes(data, greatest)

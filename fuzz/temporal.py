@@ -126,13 +126,13 @@ class Variety:
         self._tables: dict[tuple[str, int], tuple[Sequence[Option], list[float]]] = {}
 
     def make(self, draws: Draws) -> tuple[list[Piece], set[AlternativeId]]:
-        """A formula, and the alternatives of the grammar that it uses."""
+        """Return a formula, and the alternatives of the grammar that it uses."""
         maker = _Maker(self, draws, self._expansions)
         maker.expand(_ROOT, self.derivations.height(_ROOT) + self._depth)
         return maker.pieces, maker.alternatives
 
     def choose(self, rule: str, depth: int, share: float) -> Option:
-        """The option of a rule that a number from 0 to 1 means, the simplest first, among those that fit into a depth."""
+        """Return the option of a rule that a number from 0 to 1 means, the simplest first, among those that fit into a depth."""
         depth = max(depth, self.derivations.options[rule][0].height)
         if (rule, depth) not in self._tables:
             fitting = [option for option in self.derivations.options[rule] if option.height <= depth]
@@ -208,7 +208,7 @@ class _Maker:
 
 @cache
 def varieties() -> tuple[Variety, Variety]:
-    """Propositions and conditions, made from the grammar once."""
+    """Return propositions and conditions, made from the grammar once."""
     return (
         Variety(_PROPOSITIONS, depth=9, expansions=30, leaves=0.25),
         Variety(_CONDITIONS, depth=9, expansions=35, leaves=0.3),
@@ -242,7 +242,7 @@ FORMULAS: Final[SearchStrategy[Program]] = formulas()
 
 
 def words_of(case: Case) -> list[str]:
-    """The tokens of the condition."""
+    """Return the tokens of the condition."""
     return [
         text
         for kind, text in zip(case.tokens.kinds[1:], case.tokens.texts[1:], strict=True)
@@ -251,7 +251,7 @@ def words_of(case: Case) -> list[str]:
 
 
 def condition_of(text: str) -> ast.expr:
-    """The condition of a program of one `require`.
+    """Return the condition of a program of one `require`.
 
     Raises `Violation` if there is anything wrong with it.
     """
@@ -277,7 +277,7 @@ def written_in_full(line: str, node: ast.expr) -> str:
 
 
 def predicted(words: Sequence[str], table: Table = TABLE) -> str | None:
-    """The condition of the tokens ``words`` as a table of precedence predicts it, with parentheses around every operation.
+    """Return the condition of the tokens ``words`` as a table of precedence predicts it, with parentheses around every operation.
 
     ``None`` if the table says that it is refused.
     """
@@ -316,7 +316,7 @@ def readings(case: Case) -> tuple[Reading, ...]:
 
 
 def texts(case: Case) -> Mapping[str, str]:
-    """The texts of `readings`, by what they are called."""
+    """Return the texts of `readings`, by what they are called."""
     return {name: text for name, text, _ in readings(case)}
 
 

@@ -138,7 +138,7 @@ def _joined(word: str, operands: Sequence[Formula]) -> Formula:
 
 
 def formula_of(node: ast.expr, atom: Callable[[ast.expr], str] | None = None) -> Formula:
-    """The formula of a condition. Atoms are names; what else is an atom is called by what ``atom`` makes of it.
+    """Return the formula of a condition. Atoms are names; the name of any other atom is what ``atom`` makes of it.
 
     Raises `ValueError` if there is no ``atom`` and something else than a name is one.
     """
@@ -162,12 +162,12 @@ def formula_of(node: ast.expr, atom: Callable[[ast.expr], str] | None = None) ->
 
 
 def conditional(yes: Formula, test: Formula, no: Formula) -> Formula:
-    """``yes if test else no``."""
+    """Return the formula of ``yes if test else no``."""
     return ("or", ("and", test, yes), ("and", ("not", test), no))
 
 
 def atoms_of(formula: Formula) -> frozenset[str]:
-    """The atoms of a formula."""
+    """Return the atoms of a formula."""
     match formula:
         case bool():
             return frozenset()
@@ -179,7 +179,7 @@ def atoms_of(formula: Formula) -> frozenset[str]:
 
 
 def text_of(formula: Formula) -> str:
-    """A formula as a condition with parentheses around every operation."""
+    """Write a formula as a condition with parentheses around every operation."""
     match formula:
         case str():
             return formula

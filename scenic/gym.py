@@ -129,7 +129,7 @@ class Choice:
         self.space: spaces.Space[Any] = spaces.Discrete(len(self._options))
 
     def __call__(self, chosen: Any) -> tuple[Any, ...]:
-        """The actions of an option."""
+        """Return the actions of an option."""
         return self._options[int(chosen)]
 
 

@@ -115,7 +115,7 @@ class Property:
 
     @staticmethod
     def of(function: Callable[[Case], None], *, one_in: int = 1) -> "Property":
-        """The property that a function states."""
+        """Return the property that a function states."""
         name = function.__name__
 
         def holds(case: Case) -> None:
@@ -142,7 +142,7 @@ def spans_of(diagnostic: Diagnostic) -> Iterator[tuple[str, Span | None]]:
 
 
 def describe(diagnostic: Diagnostic) -> str:
-    """A diagnostic in one line."""
+    """Write a diagnostic in one line."""
     return f"{diagnostic.code} {diagnostic.message!r} at {diagnostic.span}"
 
 

@@ -33,7 +33,7 @@ def formatted_texts_read_the_same(case: Case) -> None:
 
 
 def on_lines(text: str) -> str:
-    """A program without mistakes with each logical line on one line, as far as strings allow."""
+    """Write a program without mistakes with each logical line on one line, as far as strings allow."""
     snapshot = Snapshot(text, "<text>")
     lines: list[str] = []
     depth = 0

@@ -71,7 +71,7 @@ class Lowering(NamedTuple):
 
 
 def lowered(case: Case) -> Lowering | None:
-    """The program of a case, lowered without the statements of the module that have errors; ``None`` if that does not help."""
+    """Lower the program of a case without the statements of the module that have errors; ``None`` if that does not help."""
     if case.has_error:
         return None
     tree = case.result.tree

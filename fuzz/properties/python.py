@@ -22,7 +22,7 @@ _OURS: Final = (scenic.ScenicStatement, scenic.ScenicExpression, scenic.ScenicPa
 
 
 def plain_statements(tree: ast.Module) -> Iterator[tuple[ast.stmt, int]]:
-    """The statements of a module in which nothing of Scenic's is, and the line after that of the statement before."""
+    """Yield the statements of a module that contain nothing of Scenic's, and the line after that of the statement before."""
     line = 1
     for node in tree.body:
         if not any(isinstance(part, _OURS) for part in ast.walk(node)):

@@ -311,7 +311,7 @@ def _statement(maker: _Maker, number: int, moving: bool) -> str:
 
 @st.composite
 def programs(draw: Draw) -> Program:
-    """Programs that compile but for what the types of the language do not say, such as an empty intersection."""
+    """Draw a program that compiles but for what the types of the language do not say, such as an empty intersection."""
     maker = _Maker(draw)
     moving = maker.rarely(2)
     lines = [_class(maker, f"C{number}") for number in range(maker.upto(2))]
@@ -335,7 +335,7 @@ def programs(draw: Draw) -> Program:
 
 
 def texts(count: int, number: int) -> list[str]:
-    """Texts of random programs, each once, at most ``count``: always the same for the same numbers."""
+    """Return texts of random programs, each once, at most ``count``: always the same for the same numbers."""
     drawn: list[str] = []
 
     @seed(number)

@@ -71,7 +71,7 @@ def load(text: str, *, prune: bool = True) -> scenic.Scenario:
 
 
 def sampled(scenario: scenic.Scenario, *, lanes: int | None) -> Outcome:
-    """The outcome of sampling a scenario; an error without a code is raised as an exception."""
+    """Return the outcome of sampling a scenario; an error without a code is raised as an exception."""
     found: list[tuple[Any, ...] | None] = []
     try:
         results = scenario.stream(_SCENES, seed=_SEED, max_attempts=_ATTEMPTS, lanes=lanes)
@@ -82,7 +82,7 @@ def sampled(scenario: scenic.Scenario, *, lanes: int | None) -> Outcome:
 
 
 def coded(error: Exception) -> str:
-    """The code of the diagnostic of an exception; raises the exception if it is an internal one."""
+    """Return the code of the diagnostic of an exception; raises the exception if it is an internal one."""
     found = diagnose(error)
     if found is None or found.code == "SC999" or found.span is None:
         raise AssertionError(f"no diagnostic at a place: {type(error).__name__}: {error}") from error

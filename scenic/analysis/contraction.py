@@ -174,7 +174,7 @@ def _pave(
 
 
 def _work(graph: Graph, share: float) -> int:
-    """Elements that paving may cost where this share of the candidates meets all conditions; 0 if that is not known."""
+    """Return how many elements paving may evaluate where candidates meet all conditions with probability ``share``; 0 if that is not known."""
     if share >= OFTEN:
         return FREE
     candidates = min(TIMES * CANDIDATES, SCENES / share if share else math.inf)
@@ -306,7 +306,7 @@ def _evaluated(conditions: Sequence[Node]) -> set[Node]:
 
 
 def _never_empty(bounds: Bounds) -> Bounds:
-    """Bounds of a value that may not be needed: where there is none, nothing is known."""
+    """Return bounds that are infinite in the boxes where the given ones are empty: the value may not be needed there."""
     empty = bounds.empty()
     if not empty.any():
         return bounds
@@ -404,7 +404,7 @@ class _Network:
         )
 
     def _halved(self, boxes: Boxes, axes: NDArray[np.intp]) -> tuple[Boxes, Boxes]:
-        """Both halves of each box along its widest axis; and the boxes that cannot be halved.
+        """Return both halves of each box, cut along its widest axis, and the boxes that cannot be halved.
 
         Axes of discrete distributions are cut between two of their values.
         """
@@ -467,7 +467,7 @@ class _State:
                 self._narrow(node, Bounds.exactly(1.0))
 
     def backward(self) -> None:
-        """From the conditions down to the axes, through nodes that every solution evaluates."""
+        """Narrow operands from the conditions down to the axes, through nodes that every solution evaluates."""
         masks: dict[Node, Mask] = dict.fromkeys(self._network.conditions, np.ones_like(self.alive))
         for node in reversed(self._network.inner):
             mask = masks.get(node)

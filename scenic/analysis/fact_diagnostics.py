@@ -26,7 +26,7 @@ _MEND: Final = "no scene can meet all of the marked places; change one of them"
 
 
 def prove(graph: Graph, conditions: Sequence[Fact]) -> tuple[Diagnostic, ...]:
-    """Contradictions among the conditions (SC700) and conditions that always hold (SC701). Never samples.
+    """Report contradictions among the conditions (SC700) and conditions that always hold (SC701), without sampling.
 
     A diagnostic lacks the file's name where that of its condition is not known.
     """
@@ -52,7 +52,10 @@ def prove(graph: Graph, conditions: Sequence[Fact]) -> tuple[Diagnostic, ...]:
 def prove_in_time(
     requirements: Sequence[Required], told: Collection[Span | None] = ()
 ) -> tuple[Diagnostic, ...]:
-    """Temporal requirements that no simulation meets (SC700), none without the solver; ``told`` are the places of requirements that no scene meets, which are reported already."""
+    """Report temporal requirements that no simulation meets (SC700); nothing is reported without the solver.
+
+    ``told`` contains the places of requirements that no scene meets, which are reported already.
+    """
     diagnostics = []
     for core, length in contradictions(requirements) if has_solver() else ():
         *others, last = core
@@ -76,7 +79,7 @@ def prove_in_time(
 
 
 def prove_dead(graph: Graph, domains: Sequence[Domain], names: Mapping[int, str]) -> tuple[Diagnostic, ...]:
-    """Values of choices and of ranges of integers that no scene has, since the requirements exclude them (SC702).
+    """Report values of choices and of ranges of integers that no scene has, since the requirements exclude them (SC702).
 
     Of a range that is information, not a warning: its inner values cannot be removed, and who requires that a number be even
     means just this.
@@ -121,7 +124,7 @@ def prove_dead(graph: Graph, domains: Sequence[Domain], names: Mapping[int, str]
 
 
 def _left(row: DeadValues) -> str:
-    """The values that are left of a draw, or those that are not, whichever are fewer."""
+    """Describe the values that are left of a draw, or those that are not, whichever are fewer."""
     if len(row.left) == 1:
         return f"always {row.left[0]}"
     if len(row.left) < len(row.values):
@@ -130,7 +133,7 @@ def _left(row: DeadValues) -> str:
 
 
 def _some(texts: Sequence[str], last: str = ", ") -> str:
-    """The first few of some texts."""
+    """Join the first few of some texts."""
     if len(texts) > _SHOWN:
         return ", ".join(texts[:_SHOWN]) + ", ..."
     return last.join([", ".join(texts[:-1]), texts[-1]] if len(texts) > 1 else texts)

@@ -163,7 +163,7 @@ class _Content:
             raise _UnknownError
 
     def _function(self, value: FunctionType) -> None:
-        """A function of ours: its code by its place, its defaults, and what it encloses."""
+        """Digest a function of this package: its code by its place, its defaults, and the values that it encloses."""
         if not value.__module__.startswith(_PACKAGE):
             raise _UnknownError
         code = value.__code__
@@ -178,7 +178,7 @@ class _Content:
             self.add(item)
 
     def _named(self, value: Any) -> None:
-        """A value that a module has under a name: a module of ours, of Python's or of NumPy's."""
+        """Digest a value by its name in a module of this package, of Python or of NumPy."""
         module = getattr(value, "__module__", None) or "numpy"
         name = getattr(value, "__qualname__", value.__name__)
         found: Any = sys.modules.get(module)

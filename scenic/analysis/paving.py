@@ -98,7 +98,7 @@ def pave_by_trial(
     is_costly: Callable[[], bool],
     is_spent: Callable[[], bool],
 ) -> Boxes:
-    """Boxes that hold all solutions of a box.
+    """Return boxes that contain all solutions in a box.
 
     Args:
         narrow: narrows boxes.
@@ -175,7 +175,7 @@ def _cut_along(boxes: Boxes, way: Way) -> Boxes:
 
 
 def _refined(narrow: Narrow, boxes: Boxes, axes: NDArray[np.intp], every: NDArray[np.intp]) -> Boxes:
-    """Each box in the halves that lose most, along one of some axes; boxes that lose nothing remain as they are.
+    """Halve each box along the one of some axes that loses most; boxes that lose nothing remain as they are.
 
     Where they hardly lose anything together, all are halved along their widest axes.
     """
@@ -201,7 +201,7 @@ def _refined(narrow: Narrow, boxes: Boxes, axes: NDArray[np.intp], every: NDArra
 
 
 def _widest(boxes: Boxes, axes: NDArray[np.intp]) -> NDArray[np.intp]:
-    """Of some axes, the one along which each box is widest, ``(m,)``."""
+    """Return the one of some axes along which each box is widest, ``(m,)``."""
     widest: NDArray[np.intp] = axes[(boxes.upper - boxes.lower)[:, axes].argmax(axis=1)]
     return widest
 

@@ -75,7 +75,7 @@ class SolverTerms:
             return None
 
     def either(self, condition: Term, then: Term, otherwise: Term) -> Term:
-        """``then`` where ``condition`` holds, else ``otherwise``."""
+        """Return a term that equals ``then`` where ``condition`` holds, and ``otherwise`` elsewhere."""
         return self._z3.If(condition, then, otherwise, self.context)
 
     def fresh(self, kind: Kind) -> Term:
@@ -97,11 +97,11 @@ class SolverTerms:
         return self._z3.ToReal(self._z3.ToInt(term))
 
     def define(self, condition: Term) -> None:
-        """Assert what holds of a fresh term by its meaning."""
+        """Assert a condition that defines a fresh term."""
         self.definitions.append(condition)
 
     def support(self, condition: Term, phrase: str) -> None:
-        """Assert what holds of the primitive value being encoded."""
+        """Assert a condition of the primitive value being encoded."""
         self.supports.append((condition, phrase))
 
 

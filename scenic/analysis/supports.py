@@ -160,7 +160,7 @@ def supports(graph: Graph, domain: Domain) -> tuple[DrawnSupport, ...]:
 
 
 def places_of(position: Node, graph: Graph, domain: Domain) -> tuple[Floats, Floats]:
-    """Boxes in which a position may lie, as corners ``(m, 3)``: one for each box of a part of the domain."""
+    """Return boxes in which a position may lie, as corners ``(m, 3)``, one for each box of a part of the domain."""
     axes_used = {axis for axis in graph.axes if axis in Graph([position]).index}
     numbers = np.array(sorted(graph.axes[axis] for axis in axes_used), dtype=np.intp)
     lower, upper = domain.hull
@@ -194,7 +194,7 @@ def options_of(choice: Node, nodes: Sequence[Node]) -> tuple[str, ...]:
 
 
 def cells_left(domain: Domain, variable: Variable) -> NDArray[np.bool_]:
-    """The cells of an axis that reads as discrete values which are left in a domain, as a mask ``(d,)``."""
+    """Return a mask ``(d,)`` of the cells that a domain leaves of an axis with discrete values."""
     axis, middles = variable.number, variable.middles[:, np.newaxis]
     mask = np.ones(variable.size, dtype=np.bool_)
     for part in domain.parts:
@@ -206,7 +206,7 @@ def cells_left(domain: Domain, variable: Variable) -> NDArray[np.bool_]:
 
 
 def values_of_cells(node: Node, graph: Graph, variable: Variable) -> NDArray[np.intp]:
-    """The integer that a draw gives on each cell of its axis, ``(d,)``; empty where other draws decide it, too."""
+    """Return the integer ``(d,)`` that a draw has on each cell of its axis; nothing where other draws decide it, too."""
     lower, upper = np.zeros((variable.size, graph.dimension)), np.ones((variable.size, graph.dimension))
     lower[:, variable.number] = upper[:, variable.number] = variable.middles
     bounds = over([node], graph.axes, lower, upper)[node]
@@ -218,7 +218,7 @@ def values_of_cells(node: Node, graph: Graph, variable: Variable) -> NDArray[np.
 def _options_left(
     choice: Node, graph: Graph, domain: Domain, variables: Mapping[Node, Variable]
 ) -> tuple[int, ...]:
-    """The options that are left of a choice, by number; all that it can have where they are too many to tell."""
+    """Return the numbers of the options that are left of a choice; all of them where there are too many to decide."""
     variable = variables.get(choice.operands[0])
     if variable is None:
         return tuple(range(len(options_of(choice, graph.nodes))))

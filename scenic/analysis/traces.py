@@ -117,7 +117,7 @@ def _is_fixed(atom: Closure) -> bool:
 
 
 def _key(atom: Closure) -> Hashable:
-    """Equal for atoms that are the same expression over the same values; functions of the program may give anything."""
+    """Return a key that is equal for atoms of the same expression over the same values; each atom that calls a function of the program has its own."""
     function = atom.function
     if not isinstance(function, FunctionType) or any(isinstance(item, _CALLED) for item in atom.captured):
         return id(atom)

@@ -66,13 +66,13 @@ class Encoder:
         return {**self.__dict__, "_writer": None}  # belongs to one process
 
     def __call__(self, scenario: Scenario, scenes: Sequence[Scene]) -> bytes:
-        """The block of some scenes."""
+        """Return the block of some scenes."""
         rows = self.rows(scenario, scenes)
         head = [len(scenes), len(rows), *(scene.k for scene in scenes), *(scene.attempts for scene in scenes)]
         return np.array(head, dtype=np.int64).tobytes() + rows
 
     def rows(self, scenario: Scenario, scenes: Sequence[Scene]) -> bytes:
-        """Their rows: text, the stream of an Arrow record batch, or those of `ImageRows`."""
+        """Return the rows of some scenes: text, the stream of an Arrow record batch, or those of `ImageRows`."""
         if self._images is not None:
             if self._writer is None:
                 self._writer = ImageRows(scenario, self._form, self._images)

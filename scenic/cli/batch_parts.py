@@ -129,7 +129,7 @@ def forms_help(sinks: Iterable[SinkPart]) -> str:
 
 
 def places_of(request: object, sinks: Iterable[FileSink]) -> list[Path]:
-    """The files that a request wants; raises an error of Scenic now if one could not be written later."""
+    """Return the files that a request names; raises an error of Scenic at once if one of them cannot be written later."""
     places = []
     for sink in sinks:
         place: Path | None = getattr(request, sink.option)

@@ -61,7 +61,7 @@ def batch_run(
     places: Iterable[Path] = (),
     hint: str | None = None,
 ) -> "Iterator[tuple[Advance, Engine | None]]":
-    """Everything around a batch: locks of its files, the end by a signal, a progress bar, the engine.
+    """Provide what a batch needs around it: locks of its files, an end by signals, a progress bar, the engine.
 
     Args:
         count: how many results are to be made.
@@ -103,7 +103,7 @@ def _impatient(advance: Advance, hint: str) -> Iterator[Advance]:
 
 @contextmanager
 def progress_bar(count: int, doing: str, *, shown: bool) -> Iterator[Advance]:
-    """A progress bar on the error stream if that is a terminal: what is being done, how much of it, rate, acceptance, time left."""
+    """Show a progress bar on the error stream if that is a terminal: what is being done, how much of it, rate, acceptance, time left."""
     if not (shown and sys.stderr.isatty()):
         yield lambda _scenes, _attempts: None
         return

@@ -104,7 +104,7 @@ def _outcome(task: CheckTask, surroundings_of: SurroundingsOf) -> CheckOutcome:
 
 
 def fault(filename: str, what: str) -> Diagnostic:
-    """A fault of ours, met with a file."""
+    """Return the diagnostic of an internal error that a file has caused."""
     return Diagnostic(
         "SC999",
         f"internal error: {what}",

@@ -23,11 +23,11 @@ class DiscoveredFiles:
 
 
 def discover(arguments: Sequence[str], configurations: Configurations) -> DiscoveredFiles:
-    """The files that the arguments name, and the Scenic files in the folders that they name.
+    """List the files that the arguments name, and the Scenic files in the folders that they name.
 
-    A file that is named is taken whatever it is called. In folders, those with the usual endings are taken, except
-    what the configuration excludes, and what lies in hidden folders, virtual environments or caches. Links to folders
-    are not followed, unless they are named.
+    A file that is named is listed whatever its ending. In folders, files with the usual endings are listed, except those that the
+    configuration excludes, and those in hidden folders, virtual environments or caches. Links to folders are not followed, unless
+    they are named.
     """
     files: dict[str, str] = {}
     problems: list[Diagnostic] = []

@@ -52,7 +52,7 @@ GLOBAL: Final = ("-b", "--full-backtrace", "--pdb")
 
 
 def translated(arguments: Sequence[str], commands: Sequence[str]) -> list[str] | None:
-    """The arguments in the words of this command line; ``None`` where they are its own, or mean nothing to the other.
+    """Translate the arguments of the established command line to this one; ``None`` where they are this one's own, or mean nothing to the other.
 
     ``commands`` are the names of this one's commands.
     """

@@ -92,7 +92,7 @@ class OneOf(click.Choice[str]):
     """One of a few words; a word that is none of them is refused with the one that is probably meant."""
 
     def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> str:
-        """The word, if it is one of them; fails with a suggestion otherwise."""
+        """Return the word if it is one of the choices; fails with a suggestion otherwise."""
         try:
             return super().convert(value, param, ctx)
         except click.BadParameter as error:
@@ -142,7 +142,7 @@ def option(
 
 
 def parameter_value(text: str) -> int | float | bool | str:
-    """A parameter's value as it is meant: an integer, a real number, true or false, or else text.
+    """Return a parameter's value as it is meant: an integer, a real number, true or false, or else text.
 
     Text that would be read as one of these can be quoted as in JSON: ``"5"``.
     """
@@ -193,7 +193,7 @@ def _swept_values(
 
 
 def settings_of(swept: Mapping[str, Sequence[Any]]) -> list[tuple[dict[str, Any], dict[str, Any]]]:
-    """The product of the values of parameters: for each setting all parameters, and those that differ between settings."""
+    """Return the product of the values of parameters: for each setting all parameters, and those that differ between settings."""
     several = [name for name, values in swept.items() if len(values) > 1]
     made = [dict(zip(swept, values, strict=True)) for values in product(*swept.values())]
     return [(setting, {name: setting[name] for name in several}) for setting in made]
@@ -208,7 +208,7 @@ def seconds(_context: click.Context, _option: click.Parameter, given: float | No
 def image_size_option(
     _context: click.Context, _option: click.Parameter, given: str | None
 ) -> tuple[int, int] | None:
-    """Columns and rows of an image."""
+    """Return the columns and rows of an image from text such as ``640x480``."""
     if given is None:
         return None
     match = re.fullmatch(r"(\d{1,5})[xX](\d{1,5})", given)
@@ -220,7 +220,7 @@ def image_size_option(
 
 
 def look_from_option(of: str = "images") -> Callable[[_Command], _Command]:
-    """The option ``--look-from``, given to the command as ``outlook``; ``of`` is what it looks at, for the help."""
+    """Return the option ``--look-from``, passed to the command as ``outlook``; the help calls what is looked at ``of``."""
     return option(
         "--look-from outlook AZ,EL",
         f"Viewpoint of {of}: degrees east of south and above the horizon, or 'above'.  [default: -35,33]",
@@ -263,24 +263,24 @@ program_argument = click.argument("file", metavar="FILE", type=click.Path())
 
 
 def first_option(help: str) -> Callable[[_Command], _Command]:
-    """The option ``--first``: the number of the first result."""
+    """Return the option ``--first``: the number of the first result."""
     return option("--first K", help, NATURAL, default=0)
 
 
 def seed_option(things: str) -> Callable[[_Command], _Command]:
-    """The option ``--seed``, from which all ``things`` follow."""
+    """Return the option ``--seed``, from which all ``things`` follow."""
     return option(
         "--seed S", f"{things} of one seed are always the same. Without it, one is drawn and shown.", int
     )
 
 
 def jobs_option(help: str) -> Callable[[_Command], _Command]:
-    """The option ``-j``: the number of processes."""
+    """Return the option ``-j``: the number of processes."""
     return option("-j --jobs jobs J", help, COUNT, default=1)
 
 
 def dask_option(verb: str) -> Callable[[_Command], _Command]:
-    """The option ``--dask``: a cluster to run on."""
+    """Return the option ``--dask``: a cluster to run on."""
     return option("--dask ADDRESS", f"{verb} on a Dask cluster: the address of its scheduler.")
 
 
@@ -319,7 +319,7 @@ extra_params_option = option(
 
 
 def with_options(*options: Callable[[Any], Any]) -> Callable[[_Command], _Command]:
-    """A decorator that gives a command options, in the order of its help."""
+    """Return a decorator that gives a command options, in the order of its help."""
 
     def add(command: _Command) -> _Command:
         for item in reversed(options):
@@ -330,7 +330,7 @@ def with_options(*options: Callable[[Any], Any]) -> Callable[[_Command], _Comman
 
 
 def batch_options(things: str, *, count: int = 1) -> Callable[[_Command], _Command]:
-    """The program, and options that all commands share which make many ``things`` of it; ``count`` is the default of ``-n``."""
+    """Return a decorator for commands that make many ``things`` of a program: their argument and shared options; ``count`` is the default of ``-n``."""
     return with_options(
         program_argument,
         option("-n --count N", f"Number of {things}.", COUNT, default=count),
@@ -347,7 +347,7 @@ course_options: Final = with_options(simulator_option, steps_option, timestep_op
 
 
 def program_options(command: _Command) -> _Command:
-    """Options that all commands share which run a program."""
+    """Add the options that all commands share which run a program."""
     return _program_options(
         command,
         option(
@@ -360,7 +360,7 @@ def program_options(command: _Command) -> _Command:
 
 
 def swept_program_options(command: _Command) -> _Command:
-    """The same where parameters may have several values each: ``swept`` are the values by name."""
+    """Add the options of `program_options` where parameters may have several values each: ``swept`` contains the values by name."""
     return _program_options(
         command,
         option(

@@ -38,7 +38,7 @@ _OF_USAGE: Final = frozenset({"SC600", "SC601", "SC603", "SC604", "SC605", "SC60
 
 
 def exit_code(diagnostics: Iterable[Diagnostic], *, failing: Collection[Severity] = (Severity.ERROR,)) -> int:
-    """The exit code for diagnostics: the worst of them decides; ``failing`` are the severities that count."""
+    """Return the exit code for diagnostics: the worst of them decides; ``failing`` are the severities that count."""
     codes = {item.code for item in diagnostics if item.severity in failing}
     if not codes:
         return CLEAN
@@ -62,7 +62,7 @@ def show_diagnostics(diagnostics: Iterable[Diagnostic], sources: Sources | None 
 
 @contextmanager
 def shown_warnings() -> Iterator[None]:
-    """Within this, what a running program is warned of is shown as all findings are, each once."""
+    """Show warnings of a running program in this context as all findings are shown, each once."""
     earlier_findings: set[Diagnostic] = set()
     with warnings.catch_warnings():
         as_python = warnings.showwarning

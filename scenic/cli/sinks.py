@@ -124,7 +124,7 @@ def check_page(path: Path, option: str = "--view") -> None:
 
 
 def page(path: Path, title: str) -> Sink:
-    """One HTML page that shows the scenes; raises as `check_page` at once."""
+    """Return the sink for one HTML page that shows the scenes; raises at once what `check_page` raises."""
     check_page(path)
     return _page(path, title)
 
@@ -149,9 +149,10 @@ def images(
     outlook: Mapping[str, object],
     first: int = 0,
 ) -> Sink:
-    """A PNG image of each scene: at ``path`` if that ends in ``.png``, else in the folder of that name.
+    """Return the sink for a PNG image of each scene: at ``path`` if that ends in ``.png``, else in the folder of that name.
 
-    ``outlook`` holds what is not to be as in an `Outlook` made without arguments; ``first`` is the number of the first scene.
+    ``outlook`` contains the settings that differ from an `Outlook` made without arguments; ``first`` is the number of the first
+    scene.
 
     Raises ``OutputError`` or ``MissingLibraryError`` at once if that cannot be.
     """

@@ -54,7 +54,7 @@ def lay_out(rules: Rules, start: str) -> Laid:
 
 
 def factored(rows: tuple[TextRow, ...]) -> tuple[TextRow, ...]:
-    """Rows with those that begin alike made one: engines follow what begins alike only once."""
+    """Join rows that begin alike: engines follow a common beginning only once."""
     groups: dict[TextItem, list[TextRow]] = {}
     for row in rows:
         rests = groups.setdefault(row[0], [])

@@ -65,7 +65,7 @@ class _Branch:
 def prove_branches(
     text: str, filename: str, program: Program, roots: Sequence[Node], facts: Sequence[Fact]
 ) -> tuple[Diagnostic, ...]:
-    """Branches that no scene reaches (SC703), in program order. Never samples.
+    """Report the branches that no scene reaches (SC703), in program order, without sampling.
 
     Args:
         text: the program's text.

@@ -120,7 +120,7 @@ class Runs:
                 )
 
     def settings(self) -> dict[str, Any]:
-        """Everything that decides the rows, as plain data."""
+        """Return the settings that decide the rows, as plain data."""
         plan = SearchPlan(
             self.seed, "none", None, self.objectives, self.threshold, "none", None, self.simulator,
             self.is_static, self.max_steps, self.timestep,

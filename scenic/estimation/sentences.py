@@ -86,7 +86,7 @@ def _answer(estimate: Estimate) -> str:
 
 
 def notes(estimate: Estimate) -> list[str]:
-    """Remarks that a reader has to know about the result."""
+    """List remarks that a reader has to know about the result."""
     special = _about_rare(estimate.rare, estimate) if estimate.rare is not None else _about_weights(estimate)
     is_special = estimate.weighted is not None or (estimate.rare is not None and estimate.rare.is_known)
     plain = [] if is_special else [*_about_ending(estimate), *_about_counts(estimate)]

@@ -122,12 +122,12 @@ class Evaluation:
         return 1 if decides(self.space, self.scenario) else _ATTEMPTS
 
     def together(self, first: int, numbers: Floats) -> Iterator[dict[str, Any]]:
-        """Rows of the scenes of ``numbers`` ``(n, d)``, evaluated as columns; the first is run ``first``."""
+        """Yield the rows of the scenes of ``numbers`` ``(n, d)``, evaluated as columns; the first scene is run ``first``."""
         by_address = {item.address: numbers[:, place] for place, item in enumerate(self.space.coordinates)}
         return self.chosen(first, by_address, len(numbers))
 
     def chosen(self, first: int, by_address: Mapping[int, Floats], count: int) -> Iterator[dict[str, Any]]:
-        """Rows of scenes of which some draws ``(count,)`` are chosen, by address; the first is run ``first``."""
+        """Yield the rows of scenes of which some draws ``(count,)`` are chosen, by address; the first scene is run ``first``."""
         results = self.scenario.chosen(
             by_address, count, seed=self.seed, first=first, max_attempts=self.attempts
         )
@@ -136,7 +136,7 @@ class Evaluation:
     def given(
         self, first: int, numbers: Mapping[int, Floats], words: Mapping[int, Words], count: int
     ) -> Iterator[dict[str, Any]]:
-        """Rows of scenes whose draws ``(count,)``, by address, are given; the first is run ``first``."""
+        """Yield the rows of scenes whose draws ``(count,)`` are given, by address; the first scene is run ``first``."""
         return self._rows_of(
             self.scenario.of_draws(numbers, words, count, seed=self.seed, first=first), first
         )
@@ -160,7 +160,7 @@ class Evaluation:
         return self._rows_of([self._scene(task)], task.run)
 
     def __call__(self, task: RunTask) -> dict[str, Any]:
-        """The row of one simulation. Raises nothing but interruptions.
+        """Return the row of one simulation; it raises nothing but interruptions.
 
         The status is ``objective`` or ``unwritable`` where the search cannot go on: no objective, or no room for a counterexample.
         """

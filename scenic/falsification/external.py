@@ -101,7 +101,7 @@ class VerifaiSampler(ExternalSampler):
         return found
 
     def value_of(self, feedback: Any) -> float:
-        """Feedback as the value of a point; NaN for none."""
+        """Return feedback as the value of a point; NaN for none."""
         if feedback is None:
             return math.nan
         try:

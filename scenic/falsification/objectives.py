@@ -103,7 +103,7 @@ class Objective:
         raise _unknown(self.name, names, "is neither a requirement nor recorded", "record ... as {}")
 
     def distance_of_simulation(self, result: Any, params: Mapping[str, object], threshold: float) -> float:
-        """By how much a simulation is off a failure, where failures need several parts to fail at once.
+        """Return by how much a simulation misses a failure, where failures need several parts to fail at once.
 
         It is 0 or less exactly where the value is at most ``threshold``. Parts are those of an ``or`` in a requirement, and of an expression
         ``max(...)``.
@@ -117,7 +117,7 @@ class Objective:
         return self._distance(value, {**params, **records}, threshold)
 
     def distance_of_scene(self, scene: Scene, threshold: float) -> float:
-        """By how much a scene is off a failure; see `distance_of_simulation`."""
+        """Return by how much a scene misses a failure; see `distance_of_simulation`."""
         names = {**scene.params, "ego": scene.egoObject, "objects": scene.objects}
         return self._distance(self.of_scene(scene), names, threshold)
 

@@ -68,7 +68,7 @@ def make_folder(folder: Path) -> None:
 
 @contextlib.contextmanager
 def writing(path: Path) -> Iterator[BinaryIO]:
-    """The file of `whole`; raises ``OutputError`` if it cannot be made or written, at once where that can be known."""
+    """Open the file of `whole`; raises ``OutputError`` if it cannot be made or written, at once where that can be known."""
     if not is_special(path):
         check_writable(path.resolve())
     with refusing(path), whole(path) as stream:

@@ -70,7 +70,7 @@ class ImageTexture:
         return _read(str(self.path), self.name, status.st_mtime_ns, status.st_size)
 
     def digest(self) -> str:
-        """SHA-256 of the file."""
+        """Return the SHA-256 digest of the file."""
         return self.image().digest
 
     def projected(self, places: Singles, normals: Singles, size: Sequence[float]) -> tuple[Singles, float]:

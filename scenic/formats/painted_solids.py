@@ -82,7 +82,7 @@ class Modeller:
         self._add(vertices.reshape(-1, 3), [*sides, *ends], paint)
 
     def box(self, low: _Point, high: _Point, paint: Triple | None = None) -> None:
-        """The box between two opposite corners."""
+        """Add the box between two opposite corners."""
         (x, y, z), (x2, y2, z2) = low, high
         self.loft(
             [[(x, y, level), (x2, y, level), (x2, y2, level), (x, y2, level)] for level in (z, z2)], paint
@@ -150,7 +150,7 @@ class Modeller:
         self._add(vertices + np.array(center), faces, paint)
 
     def panel(self, corners: Sequence[_Point], paint: Triple | None, inset: float = 0.0) -> None:
-        """A flat piece on a face with these corners, anticlockwise seen from outside, smaller by parts of its size."""
+        """Add a flat piece on a face with these corners, anticlockwise seen from outside; it is smaller than the face by ``inset`` of its size."""
         points = np.array(corners, dtype=np.float64)
         normal = np.cross(points[1] - points[0], points[-1] - points[0])
         middle = points.mean(axis=0)

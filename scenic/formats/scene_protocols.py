@@ -23,7 +23,7 @@ class ShapeSource(Protocol):
     """The origin of a shape."""
 
     def as_dict(self) -> dict[str, Any]:
-        """Plain data: ``kind``, and what else selects the mesh."""
+        """Return plain data: ``kind``, and what else selects the mesh."""
 
 
 class Shape(Protocol):

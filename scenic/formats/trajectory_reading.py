@@ -65,7 +65,7 @@ class Trajectory:
         return self.orientations[:, self.index(name)]
 
     def size(self, name: str | int) -> tuple[float, float, float]:
-        """Its width, length and height, metres."""
+        """Return an object's width, length and height, metres."""
         width, length, height = self.about["objects"][self.index(name)]["size"]
         return width, length, height
 

@@ -179,7 +179,7 @@ class Batch:
         return place is not None and place.slot in self._groups
 
     def column(self, node: Node) -> Column:
-        """Values of ``node``, leading dimension ``len(self)`` or 1."""
+        """Return the values of ``node``; the leading dimension is ``len(self)``, or 1 where all lanes have the same value."""
         if node.is_constant:
             column: Column = node.payload.column
             return column
@@ -188,7 +188,7 @@ class Batch:
         return found
 
     def status(self, node: Node) -> Status | None:
-        """Status of each lane at ``node``; ``None`` when all are `OK`."""
+        """Return the status of each lane at ``node``, ``None`` when all are `OK`."""
         if node.is_constant:
             return None
         place = self._place(node)
@@ -199,14 +199,14 @@ class Batch:
         return mine if mine.any() else None
 
     def full(self, node: Node) -> Column:
-        """As `column`, always of leading dimension ``len(self)``."""
+        """Return the values of ``node`` as `column` does, but always with the leading dimension ``len(self)``."""
         column = self.column(node)
         if len(column) == len(self.rows):
             return column
         return np.broadcast_to(column, (len(self.rows), *column.shape[1:]))
 
     def stack(self, nodes: Sequence[Node]) -> Column:
-        """Values of nodes of one kind, of shape (nodes or 1, lanes or 1, ...); 1 where all are the same."""
+        """Return the values of nodes of one kind, of shape (nodes or 1, lanes or 1, ...); a dimension is 1 where all values along it are the same."""
         self.need(nodes)
         gather = self._scheduler.gather(self._schedule, tuple(nodes))
         return self._operand(gather)[0]
@@ -216,7 +216,7 @@ class Batch:
         return self.read(lane, node)
 
     def read(self, lane: int, node: Node) -> Any:
-        """`value` in one lane, with the signature that samples use."""
+        """Return the value of ``node`` in one lane; the order of the arguments is that of samples."""
         values = self._values_of(node)
         return values[lane if len(values) > 1 else 0]
 
@@ -265,7 +265,7 @@ class Batch:
         return group
 
     def _since(self, generation: int) -> NDArray[np.intp]:
-        """Lanes of an older generation that are still here."""
+        """Return the numbers, in an older generation, of the lanes that are still in the batch."""
         lanes = self._kept[-1]
         for chosen in reversed(self._kept[generation:-1]):
             lanes = chosen[lanes]

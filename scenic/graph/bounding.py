@@ -19,7 +19,7 @@ _VISITS: Final = 256
 
 
 def of_kind(kind: Kind) -> Bounds | None:
-    """Bounds of any value of a kind, for one box; ``None`` for Python objects."""
+    """Return the bounds of any value of a kind, for one box; ``None`` for Python objects."""
     if kind.is_boxed:
         return None
     shape = (1, *kind.trailing)
@@ -31,7 +31,7 @@ def of_kind(kind: Kind) -> Bounds | None:
 
 
 def of_constant(node: Node) -> Bounds | None:
-    """Bounds of a constant, for one box."""
+    """Return the bounds of a constant, for one box; ``None`` for Python objects that are not numbers."""
     column = node.payload.column
     if node.kind.is_boxed:
         value = node.value
@@ -47,7 +47,7 @@ def of_constant(node: Node) -> Bounds | None:
 
 
 def forward(node: Node, operands: Sequence[Bounds | None]) -> Bounds | None:
-    """Bounds of a node that is neither constant nor axis, from its operands' bounds."""
+    """Return the bounds of a node that is neither constant nor axis, computed from the bounds of its operands."""
     return integral(node.kind, read(node.operation, node.kind, node.payload, operands))
 
 
@@ -72,7 +72,7 @@ def integral(kind: Kind, bounds: Bounds | None) -> Bounds | None:
 
 
 def overall(node: Node) -> Bounds | None:
-    """Bounds of a node over the whole cube, for one box; ``None`` where nothing is known.
+    """Return the bounds of a node over the whole cube, for one box; ``None`` where nothing is known.
 
     Visits a bounded number of nodes below, and none below those whose bounds are known already. They are kept with the node.
     """
@@ -114,7 +114,7 @@ def over(
     upper: Floats,
     known: dict[Node, Bounds | None] | None = None,
 ) -> dict[Node, Bounds | None]:
-    """Bounds of all nodes below some, over boxes of the cube.
+    """Return the bounds of the roots, and of all nodes below them, over boxes of the cube.
 
     Args:
         roots: the nodes whose bounds are wanted.

@@ -30,7 +30,7 @@ class Bounds:
 
     @staticmethod
     def exactly(value: object) -> "Bounds":
-        """Bounds of a constant, for one box (broadcasts against others)."""
+        """Return the bounds of a constant, for one box; they broadcast against those of more boxes."""
         array = np.asarray(value, dtype=np.float64)[np.newaxis]
         return Bounds(array, array)
 

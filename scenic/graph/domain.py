@@ -94,7 +94,7 @@ class Domain:
         return boxes * math.prod(one.share for one in self.finite)
 
     def _logarithms(self) -> Floats:
-        """Logarithm of each box's volume; of many axes the volume itself may be too small for a float."""
+        """Return the logarithm of each box's volume; with many axes the volume itself may be too small for a float."""
         return np.asarray(np.log(self.upper - self.lower).sum(axis=1))
 
     @property
@@ -109,7 +109,10 @@ class Domain:
         return lower, upper
 
     def joined_axes(self) -> list[NDArray[np.intp]]:
-        """The axes that are drawn together: of each part those that its boxes do not all narrow alike, then those of each finite part."""
+        """Return the groups of axes that are drawn together.
+
+        Each part has a group: the axes that its boxes do not all narrow alike. Each finite part has another one.
+        """
         boxes = [
             np.flatnonzero(((part.lower != part.lower[0]) | (part.upper != part.upper[0])).any(axis=0))
             for part in self.parts
@@ -269,7 +272,7 @@ class Domain:
         return everywhere
 
     def to_data(self) -> dict[str, Any]:
-        """Plain data for a manifest: the axes that are narrowed, by number, box by box."""
+        """Return plain data for a manifest: the axes that are narrowed, by number, box by box."""
         first, *factors = (part._boxes_to_data() for part in self.parts)
         return {"dimension": self.dimension, "boxes": first, **({"factors": factors} if factors else {})}
 

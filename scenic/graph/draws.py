@@ -27,7 +27,7 @@ _UNUSED_BITS: Final = np.uint64(12)
 
 
 def mix(words: Words) -> Words:
-    """Scramble 64-bit words (the finaliser of SplitMix64: Steele, Lea and Flood, OOPSLA 2014)."""
+    """Scramble 64-bit words by the finaliser of SplitMix64 (Steele, Lea and Flood, OOPSLA 2014)."""
     with np.errstate(over="ignore"):
         result = words + _GOLDEN
         result ^= result >> _SHIFTS[0]
@@ -83,7 +83,7 @@ def words_of(keys: Words, addresses: Words) -> Words:
 
 
 def open_unit(words: Words) -> Floats:
-    """Words as numbers of the open interval (0, 1).
+    """Return the numbers of the open interval (0, 1) that words stand for.
 
     52 bits and a half: never 0 or 1, which have no image under an unbounded law (53 bits and a half round to 1).
     """
@@ -109,7 +109,7 @@ class Source(Protocol):
         """Numbers ``(n,)`` of one address in each lane, those of `uniforms`."""
 
     def words(self, addresses: Words) -> Words:
-        """Words that key further draws (of nodes that retry, of opaque calls), ``(addresses, lanes)``."""
+        """Return words ``(addresses, lanes)`` that key further draws: of nodes that retry, and of opaque calls."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -35,7 +35,7 @@ def _are_finite(lower: Floats, upper: Floats) -> bool:
 
 
 def unbounded(like: Bounds) -> Bounds:
-    """Bounds that say nothing, of the shape of ``like``."""
+    """Return bounds from minus to plus infinity, of the shape of ``like``."""
     return Bounds(np.full(like.lower.shape, -np.inf), np.full(like.lower.shape, np.inf))
 
 
@@ -61,12 +61,12 @@ def _safe(lower: Floats, upper: Floats) -> Bounds:
 
 
 def negative(a: Bounds) -> Bounds:
-    """``-a``, exactly."""
+    """Return the exact bounds of ``-a``."""
     return Bounds(-a.upper, -a.lower)
 
 
 def add(a: Bounds, b: Bounds) -> Bounds:
-    """``a + b``."""
+    """Return bounds of ``a + b``."""
     a, b = _aligned(a, b)
     lower, upper = a.lower + b.lower, a.upper + b.upper
     if not _are_finite(lower, upper):
@@ -76,12 +76,12 @@ def add(a: Bounds, b: Bounds) -> Bounds:
 
 
 def subtract(a: Bounds, b: Bounds) -> Bounds:
-    """``a - b``."""
+    """Return bounds of ``a - b``."""
     return add(a, negative(b))
 
 
 def multiply(a: Bounds, b: Bounds) -> Bounds:
-    """``a * b``."""
+    """Return bounds of ``a * b``."""
     a, b = _aligned(a, b)
     products = (a.lower * b.lower, a.lower * b.upper, a.upper * b.lower, a.upper * b.upper)
     lower, upper = _extremes(products)
@@ -92,7 +92,7 @@ def multiply(a: Bounds, b: Bounds) -> Bounds:
 
 
 def divide(a: Bounds, b: Bounds) -> Bounds:
-    """``a / b``; unbounded where ``b`` may be zero."""
+    """Return bounds of ``a / b``; they are infinite where ``b`` may be zero."""
     a, b = _aligned(a, b)
     quotients = (a.lower / b.lower, a.lower / b.upper, a.upper / b.lower, a.upper / b.upper)
     lower, upper = _extremes([np.where(np.isnan(quotient), 0.0, quotient) for quotient in quotients])
@@ -110,36 +110,39 @@ def _extremes(values: Sequence[Floats]) -> tuple[Floats, Floats]:
 
 
 def absolute(a: Bounds) -> Bounds:
-    """``abs(a)``, exactly."""
+    """Return the exact bounds of ``abs(a)``."""
     lower = np.maximum(np.maximum(a.lower, -a.upper), 0.0)
     return Bounds(lower, np.maximum(-a.lower, a.upper))
 
 
 def square(a: Bounds) -> Bounds:
-    """``a * a`` of one value with itself, never negative."""
+    """Return bounds of ``a * a``, both factors being the same value: they are never negative."""
     size = absolute(a)
     result = outward(size.lower * size.lower, size.upper * size.upper)
     return Bounds(np.maximum(result.lower, 0.0), result.upper)
 
 
 def square_root(a: Bounds) -> Bounds:
-    """``sqrt(a)``; negative parts are cut off."""
+    """Return bounds of ``sqrt(a)``; the negative part of ``a`` is cut off."""
     result = outward(np.sqrt(np.maximum(a.lower, 0.0)), np.sqrt(np.maximum(a.upper, 0.0)))
     return Bounds(np.maximum(result.lower, 0.0), result.upper)
 
 
 def minimum(a: Bounds, b: Bounds) -> Bounds:
-    """``min(a, b)``, exactly."""
+    """Return the exact bounds of ``min(a, b)``."""
     return doubtful(Bounds(np.minimum(a.lower, b.lower), np.minimum(a.upper, b.upper)), a, b)
 
 
 def maximum(a: Bounds, b: Bounds) -> Bounds:
-    """``max(a, b)``, exactly."""
+    """Return the exact bounds of ``max(a, b)``."""
     return doubtful(Bounds(np.maximum(a.lower, b.lower), np.maximum(a.upper, b.upper)), a, b)
 
 
 def floor_divide(a: Bounds, b: Bounds) -> Bounds:
-    """``a // b``, exactly while quotients are small enough to be whole floats; unbounded where ``b`` may be zero."""
+    """Return bounds of ``a // b``.
+
+    They are exact while quotients are small enough to be whole floats, and infinite where ``b`` may be zero.
+    """
     corners = [np.floor_divide(p, q) for p in (a.lower, a.upper) for q in (b.lower, b.upper)]
     lower, upper = _extremes([np.where(np.isnan(corner), 0.0, corner) for corner in corners])
     large = np.maximum(np.abs(lower), np.abs(upper)) >= 2.0**52
@@ -151,7 +154,7 @@ def floor_divide(a: Bounds, b: Bounds) -> Bounds:
 
 
 def modulo(a: Bounds, b: Bounds) -> Bounds:
-    """``a % b`` as Python defines it: of the sign of ``b`` and no larger."""
+    """Return bounds of ``a % b`` as Python defines it: the result has the sign of ``b`` and is smaller."""
     lower = np.where(b.lower >= 0, 0.0, np.minimum(b.lower, 0.0))
     upper = np.where(b.upper <= 0, 0.0, np.maximum(b.upper, 0.0))
     # A dividend between zero and the divisor is its own remainder, and a remainder of equal signs is no larger.
@@ -170,7 +173,7 @@ def modulo(a: Bounds, b: Bounds) -> Bounds:
 
 
 def power(a: Bounds, b: Bounds) -> Bounds:
-    """``a ** b``: for a fixed whole exponent, or a base that is not negative; otherwise unbounded."""
+    """Return bounds of ``a ** b`` for a fixed whole exponent, or a base that is not negative; other bounds are infinite."""
     corners = [np.power(base, exponent) for base in (a.lower, a.upper) for exponent in (b.lower, b.upper)]
     lower, upper = _extremes([np.where(np.isnan(corner), np.inf, corner) for corner in corners])
     whole = (b.lower == b.upper) & (b.lower == np.floor(b.lower))
@@ -206,14 +209,14 @@ def components(a: Bounds) -> list[Bounds]:
 
 
 def stacked(parts: Sequence[Bounds]) -> Bounds:
-    """Bounds of a vector from those of its components; the opposite of `components`."""
+    """Return the bounds of a vector from those of its components; this is the opposite of `components`."""
     lowers = np.broadcast_arrays(*(part.lower for part in parts))
     uppers = np.broadcast_arrays(*(part.upper for part in parts))
     return Bounds(np.stack(lowers, axis=1), np.stack(uppers, axis=1))
 
 
 def widened(a: Bounds, margin: Floats | float) -> Bounds:
-    """Bounds moved outward by an absolute margin."""
+    """Return bounds moved outward by an absolute margin."""
     return outward(a.lower - margin, a.upper + margin)
 
 

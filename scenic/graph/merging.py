@@ -37,7 +37,7 @@ class Merger:
         self._merged: dict[Node, Node] = {}
 
     def __call__(self, node: Node) -> Node:
-        """A node of the same value that takes less to evaluate; ``node`` itself where there is none."""
+        """Return a node of the same value that takes less to evaluate; ``node`` itself where there is none."""
         if node.operation is not SELECT or node.kind.is_boxed or len(node.operands) <= _LEAST:
             return node
         replacement = self._merged.get(node)
@@ -98,7 +98,7 @@ class _Choice:
 
 
 def _likeness(node: Node) -> Hashable:
-    """Equal for nodes that may be merged."""
+    """Return a key that is equal for nodes that may be merged."""
     if node.is_constant or node.is_axis:
         return node.operation, node.kind
     operation = node.operation

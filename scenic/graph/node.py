@@ -200,7 +200,7 @@ class Graph:
 
 
 def _postorder(root: Node, done: Any) -> list[Node]:
-    """Nodes below ``root`` that are not in ``done``, operands first. No recursion: chains may be long."""
+    """List the nodes below ``root`` that are not in ``done``, operands first. A loop does it: chains may be too long for recursion."""
     if root in done:
         return []
     result: dict[Node, None] = {}

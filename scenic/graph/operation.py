@@ -132,7 +132,7 @@ class Terms(Protocol):
         """Return the value of a term that is a fixed number."""
 
     def either(self, condition: Any, then: Any, otherwise: Any) -> Any:
-        """``then`` where ``condition`` holds, else ``otherwise``."""
+        """Return a term that equals ``then`` where ``condition`` holds, and ``otherwise`` elsewhere."""
 
     def fresh(self, kind: Kind) -> Any:
         """Return a term about which nothing is known; always a sound encoding of any value."""
@@ -141,10 +141,10 @@ class Terms(Protocol):
         """Return the floor of a real term."""
 
     def define(self, condition: Any) -> None:
-        """Assert what holds of a fresh term by its meaning; every other value must allow some value of that term."""
+        """Assert a condition that defines a fresh term; every value of the other terms must allow some value of that term."""
 
     def support(self, condition: Any, phrase: str) -> None:
-        """Assert what holds of the primitive value being encoded, with words for it (``"is at most 10"``)."""
+        """Assert a condition of the primitive value being encoded; ``phrase`` says it in words (``"is at most 10"``)."""
 
 
 BatchReading = Callable[..., Column]

@@ -38,7 +38,7 @@ def multiply(p: npt.ArrayLike, q: npt.ArrayLike) -> Array:
 
 
 def product(p: Parts, q: Parts) -> Parts:
-    """As `multiply`, over components: of arrays, or of plain floats."""
+    """Return the product of two quaternions as `multiply` does, but component by component: of arrays, or of plain floats."""
     px, py, pz, pw = p
     qx, qy, qz, qw = q
     return (
@@ -57,7 +57,7 @@ def conjugate(q: npt.ArrayLike) -> Array:
 
 
 def rotate(q: npt.ArrayLike, v: npt.ArrayLike) -> Array:
-    """Vectors ``(..., 3)`` turned by unit quaternions ``(..., 4)``: from the frame q to the global one.
+    """Turn vectors ``(..., 3)`` by unit quaternions ``(..., 4)``, from the frame q to the global one.
 
     Uses ``v + 2w (u × v) + 2 u × (u × v)`` with ``u = (x, y, z)``; the identity gives back v exactly.
     """
@@ -69,7 +69,7 @@ def rotate(q: npt.ArrayLike, v: npt.ArrayLike) -> Array:
 
 
 def turned(q: Parts, v: Triple) -> Triple:
-    """As `rotate`, over components: of arrays, or of plain floats."""
+    """Turn a vector as `rotate` does, but component by component: of arrays, or of plain floats."""
     x, y, z, w = q
     vx, vy, vz = v
     tx = 2 * (y * vz - z * vy)
@@ -87,7 +87,7 @@ def from_euler(yaw: npt.ArrayLike, pitch: npt.ArrayLike, roll: npt.ArrayLike) ->
 
 
 def of_euler(yaw: Any, pitch: Any, roll: Any) -> Parts:
-    """As `from_euler`, over arrays or plain floats."""
+    """Return the quaternion of `from_euler` by components, which are arrays or plain floats."""
     cy, sy = _cos_and_sin(yaw * 0.5)
     cp, sp = _cos_and_sin(pitch * 0.5)
     cr, sr = _cos_and_sin(roll * 0.5)
@@ -185,7 +185,7 @@ def _angle(sine: float, cosine: float) -> float:
 
 
 def normal_angle(angle: float) -> float:
-    """As `normalize_angle`, of a plain float."""
+    """Return a plain float as `normalize_angle` does."""
     if abs(angle) <= math.pi:
         return angle
     if not math.isfinite(angle):
@@ -263,7 +263,7 @@ def normalize_angle(a: npt.ArrayLike) -> Array:
 
 
 def _empty(shape: tuple[int, ...], components: int) -> Array:
-    """Rows of components stored component by component, which suits the elementwise work on them."""
+    """Return an array of rows that is stored component by component, which suits elementwise work on them."""
     return components_last(np.empty((components, *shape)))
 
 

@@ -152,7 +152,7 @@ class Scheduler:
         return schedule
 
     def chain(self, stages: Sequence[Sequence[Node]]) -> tuple[Schedule, ...]:
-        """Schedules that get the nodes of one stage after the other, from nothing, and free each column after its last use.
+        """Return schedules that evaluate the stages in turn, starting empty, and free each column after its last use.
 
         A stage's nodes can be read until the next one begins; those of the last are kept.
         """
@@ -187,7 +187,7 @@ class Scheduler:
         return frozenset(self._missing(roots, {}))
 
     def without_python(self, roots: Sequence[Node]) -> tuple[Node, ...]:
-        """Filter nodes: keep the nodes that are evaluated without a call of the program's own Python code."""
+        """Return those of the nodes that are evaluated without a call of the program's own Python code."""
         clear: dict[Node, bool] = {}
         for node in self._missing(roots, {}):
             clear[node] = not node.runs_python and all(
@@ -260,7 +260,7 @@ class Scheduler:
         return list(result)
 
     def _signature(self, node: Node) -> Hashable:
-        """Equal for nodes that can be evaluated together."""
+        """Return a key that is equal for nodes that can be evaluated together."""
         if node.is_axis:
             return "axis"
         if node.is_drawn:

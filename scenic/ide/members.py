@@ -19,7 +19,7 @@ __all__ = ["members"]
 def members(
     project: Project, snapshot: Snapshot, before: tuple[str, ...], line: int, column: int
 ) -> Iterator[Completion]:
-    """Completions after the dot that follows ``before``; none if it is not known what has members there."""
+    """Yield completions after the dot that follows ``before``; nothing if the value there is not known."""
     text = operand_before(before)
     owner_expression = expression(project, snapshot, text, line, column) if text else None
     if owner_expression is None:

@@ -14,7 +14,7 @@ __all__ = ["can_repair_all", "difference", "ignoring", "repair_all", "repairs", 
 
 
 def repairs(found: Sequence[Diagnostic], span: Span) -> tuple[Diagnostic, ...]:
-    """Filter diagnostics: keep those that have a repair and that touch ``span``, themselves or with the repair."""
+    """Return the diagnostics that have a repair and that touch ``span``, themselves or with the repair."""
     return tuple(
         item
         for item in found

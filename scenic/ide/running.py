@@ -85,7 +85,7 @@ def run_remarks(
 
 
 def analysis_text(filename: str, *, go_on: Callable[[], None] = lambda: None) -> str:
-    """Text about what the program in a file costs to sample, and what rejects its candidates. **Runs the program.**
+    """Describe what the program in a file costs to sample, and what rejects its candidates. **Runs the program.**
 
     Raises `RunError` as `sample_page` does.
     """

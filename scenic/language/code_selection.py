@@ -82,9 +82,9 @@ class Rules:
         return tuple(selection)
 
     def overridden(self, select: Sequence[str], ignore: Sequence[str]) -> "Rules":
-        """These rules below a choice that is made nearer to the user.
+        """Return these rules below a choice that is made nearer to the user.
 
-        A ``select`` there takes the place of both lists here; an ``ignore`` there adds to the one here.
+        A ``select`` of that choice replaces both lists of these rules; an ``ignore`` adds to theirs.
         """
         if select:
             return replace(self, select=tuple(select), ignore=tuple(ignore))

@@ -110,7 +110,7 @@ NEEDS_MAP: Final = frozenset(
 
 
 def how_to_get(model: str) -> str:
-    """Advice on a world model that was not found."""
+    """Return advice on a world model that was not found."""
     if model in LIBRARIES:
         folders = model.rpartition(".")[0].replace(".", "/")
         return (

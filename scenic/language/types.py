@@ -200,7 +200,7 @@ VIEW_ANGLES: Final = Type("pair of angles", "a pair of angles", "write two angle
 
 
 def listed(types: Sequence[Type]) -> str:
-    """Types in the words of the documentation: ``vector or region``."""
+    """Write types in the words of the documentation: ``vector or region``."""
     return _alternatives([each.name for each in types])
 
 

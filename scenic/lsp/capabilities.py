@@ -45,7 +45,7 @@ WATCHED: Final = ("**/*.scenic", "**/*.sc", "**/*.py", "**/pyproject.toml")
 
 
 def options_for(client: types.ClientCapabilities) -> Mapping[str, Any]:
-    """By method: the options with which it is offered to a client."""
+    """Return by method the options with which it is offered to a client."""
     files = _modules_and_folders()
     options: dict[str, Any] = {
         types.TEXT_DOCUMENT_DID_SAVE: types.SaveOptions(include_text=False),

@@ -105,7 +105,7 @@ class Playground:
         self._hosts: frozenset[str] = frozenset()
 
     async def start(self, port: int = 0) -> str:
-        """Listen on a port of this machine, 0 for any that is free; the address of the page. Raises `OSError`."""
+        """Listen on a port of this machine, 0 for any that is free, and return the address of the page; raises `OSError`."""
         logger = logging.getLogger("websockets.server")
         logger.addHandler(logging.NullHandler())
         logger.propagate = False

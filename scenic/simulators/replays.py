@@ -41,7 +41,7 @@ class Replay:
 
     @staticmethod
     def decoded(data: bytes) -> "Replay":
-        """From bytes; raises `SerializationError` for any others."""
+        """Read a replay from its bytes; raises `SerializationError` for any others."""
         try:
             if data[:4] != _MAGIC:
                 raise SerializationError("these bytes are no replay of a simulation")
@@ -93,7 +93,7 @@ class Conditioned:
         self._sourcing = kept(dict(Replay.decoded(replay).draws), until=until, agents=agents, keep=keep)
 
     def __call__(self, rest: Source) -> Source:
-        """The source that gives them, and numbers of ``rest``."""
+        """Return the source that yields the chosen numbers, and numbers of ``rest`` elsewhere."""
         return self._sourcing(rest)
 
 
@@ -169,7 +169,7 @@ class Tape:
             self._states.append(self._state)
 
     def note(self, simulation: Any, obj: object, names: Sequence[str]) -> None:
-        """The properties of one object; raises `DivergenceError` where they differ from the replayed ones."""
+        """Record the properties of one object; raises `DivergenceError` where they differ from the replayed ones."""
         if not self._keep_states:
             return
         for name in names:

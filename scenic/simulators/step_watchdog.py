@@ -22,7 +22,7 @@ _DELAYS: Final = 5
 
 
 def patience() -> float:
-    """The seconds in force: those that a script has set as ``scenic.core.dynamics.stuckBehaviorWarningTimeout``, else `STUCK_AFTER`."""
+    """Return the seconds in force: those that a script has set as ``scenic.core.dynamics.stuckBehaviorWarningTimeout``, else `STUCK_AFTER`."""
     return float(getattr(sys.modules.get("scenic.core.dynamics"), "stuckBehaviorWarningTimeout", STUCK_AFTER))
 
 

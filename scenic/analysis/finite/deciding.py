@@ -150,7 +150,7 @@ class _Finiteness:
                 self._draws[node] = draws
 
     def __call__(self, nodes: Sequence[Node]) -> int:
-        """The bits of some nodes together."""
+        """Return the union of the bits of some nodes."""
         found = 0
         for node in nodes:
             found |= self._draws[node]

@@ -65,7 +65,7 @@ class Decomposer:
         self._below: dict[int, tuple[int, ...]] = {}
 
     def tables(self, node: Node) -> list[Table] | None:
-        """Tables that hold together where a condition holds; ``None`` where it cannot be taken apart."""
+        """Return tables that hold together where a condition holds; ``None`` where the condition cannot be decomposed."""
         try:
             columns, scope, kinds = self._operands(node)
             column, shape = _applied(node, columns, kinds)

@@ -120,7 +120,7 @@ def _row(table: Table, variable: int, value: int) -> np.ndarray[tuple[int], np.d
 
 
 def bounded(labels: Mapping[int, NDArray[np.intp]], weights: Mapping[int, Floats]) -> Differing | None:
-    """Variables that differ, drawn under a bound, so that choices may clash; ``None`` where they have too many labels."""
+    """Return the draw of variables that differ, under a bound, so that choices may clash; ``None`` where they have too many labels."""
     width = 1 + max(int(mine.max()) for mine in labels.values())
     if width > MOST_BOUNDED_LABELS:
         return None

@@ -146,7 +146,7 @@ def findings(
 
 
 def narrowed_values(decision: Decision) -> tuple[Finite, ...]:
-    """Each discrete value that constraints narrow, with the values that some solution has: for reports, not to be drawn from."""
+    """Return the discrete values that constraints narrow, each with the values that some solution has; they are for reports, not to be drawn from."""
     parts = []
     for component in decision.components:
         for variable, mask in _alive(decision, component).items():
@@ -170,7 +170,7 @@ def narrowed_values(decision: Decision) -> tuple[Finite, ...]:
 
 
 def with_possible_values(domain: Domain, decision: Decision) -> Domain:
-    """A domain in which each discrete value that is drawn by a finite part has just the values of some solution: for reports."""
+    """Return a domain for reports, in which each discrete value that a finite part draws has just the values of some solution."""
     drawn = {axis for one in domain.finite for axis in one.axes.tolist()}
     return domain.with_finite(
         tuple(one for one in narrowed_values(decision) if drawn.issuperset(one.axes.tolist()))

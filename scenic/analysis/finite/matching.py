@@ -16,7 +16,7 @@ __all__ = ["matchable"]
 
 
 def matchable(labels: Mapping[int, NDArray[np.intp]]) -> dict[int, Mask] | None:
-    """The values of each variable that some choice of different labels has, as masks; ``None`` where there is no choice.
+    """Return masks of the values of each variable that some choice of different labels has; ``None`` where there is no such choice.
 
     Args:
         labels: of each variable the labels of its values.
@@ -48,7 +48,7 @@ def matchable(labels: Mapping[int, NDArray[np.intp]]) -> dict[int, Mask] | None:
 
 
 def _matched(may: Mask) -> NDArray[np.intp] | None:
-    """A label for each variable, no two alike, by augmenting paths; ``None`` where there is no such choice."""
+    """Return a label for each variable, all of them different, found by augmenting paths; ``None`` where there is no such choice."""
     count, width = may.shape
     owner = np.full(width, -1, dtype=np.intp)
     for start in range(count):

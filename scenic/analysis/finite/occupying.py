@@ -206,7 +206,10 @@ class _Group:
 
 
 def occupied(reduced: Reduced, exclusive: Exclusive) -> Occupied | None:
-    """Exclusive bundles as groups, with as many of the other constraints met as groups remain small; ``None`` for too many labels."""
+    """Return the draw of exclusive bundles as groups; ``None`` where there are too many labels.
+
+    The groups meet as many of the other constraints as they can while they remain small.
+    """
     width = 1 + max(int(mine.max()) for mine in exclusive.labels.values())
     if width > MOST_LABELS:
         return None

@@ -125,7 +125,7 @@ def _solved(problem: FiniteProblem, constraints: Sequence[Constraint]) -> Compon
 def _exact(
     reduced: Reduced, constraints: tuple[Constraint, ...]
 ) -> tuple[tuple[Drawn, ...], tuple[Constraint, ...]] | None:
-    """A way that meets all constraints: by elimination, or from a list."""
+    """Return draws that meet all constraints, by elimination or from a list; ``None`` where neither is possible."""
     eliminated = _eliminated(reduced, constraints)
     if eliminated is not None:
         return (eliminated,), constraints
@@ -216,7 +216,7 @@ def _alone(reduced: Reduced, variable: int) -> Drawn:
 def _strongest(
     reduced: Reduced, sets: Sequence[Exclusive]
 ) -> tuple[tuple[Drawn, ...], tuple[Constraint, ...]]:
-    """Ways that meet the strongest constraints: by elimination alone, or after values that differ."""
+    """Return draws that meet the strongest constraints, by elimination alone, or after values that differ."""
     # What values that were struck out have decided holds however the others are drawn.
     decided = [constraint for constraint in reduced.constraints if not reduced.tables([constraint])]
     ways = [_relaxed(reduced, reduced.constraints, frozenset())]

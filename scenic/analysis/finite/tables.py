@@ -93,7 +93,9 @@ class Tabulator:
         test: Callable[[Batch], CheckVerdict],
         kind: str,
     ) -> Mask | None:
-        """The combinations ``(sizes of the scope)`` that pass a check; ``None`` where there are too many, or one cannot be decided (`reason`).
+        """Return a mask ``(sizes of the scope)`` of the combinations that pass a check.
+
+        It is ``None`` where there are too many combinations, or where one cannot be decided (`reason`).
 
         Args:
             scope: the finite axes that the check reads.
@@ -157,7 +159,7 @@ class Likeness:
         self._identities: dict[Hashable, int] = {}
 
     def __call__(self, nodes: Sequence[Node], every: Sequence[Node]) -> Hashable:
-        """Equal for alike nodes; ``every`` are all nodes below them."""
+        """Return a key that is equal for alike nodes; ``every`` contains all nodes below them."""
         places = {node: place for place, node in enumerate(every)}
         parts: list[Hashable] = []
         for node in every:

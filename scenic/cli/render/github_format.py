@@ -14,7 +14,7 @@ _COMMANDS: Final = {Severity.ERROR: "error", Severity.WARNING: "warning", Severi
 
 
 def render_github(report: Report) -> str:
-    """One line per diagnostic."""
+    """Write one line for each diagnostic."""
     return "".join(f"{_command(item)}\n" for item in report.diagnostics)
 
 

@@ -14,7 +14,7 @@ _UNREADABLE: Final = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0
 
 
 def render_junit(report: Report) -> str:
-    """One suite; a run without diagnostics is one case that succeeds."""
+    """Write one suite; a run without diagnostics is one case that succeeds."""
     failures = [each for each in report.diagnostics if each.severity is not Severity.INFORMATION]
     suites = ElementTree.Element("testsuites")
     suite = ElementTree.SubElement(

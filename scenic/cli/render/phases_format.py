@@ -24,7 +24,7 @@ _SIMULATING: Final = ("SC503", "SC504", "SC505")
 
 
 def render_phases(report: Report) -> str:
-    """A line for each program: the first phase in which it would fail, and the first error of that phase; then their numbers."""
+    """Write a line for each program: the first phase in which it would fail, and the first error of that phase; then the numbers of programs by phase."""
     errors: dict[str, list[Diagnostic]] = {name: [] for name in report.names}
     for item in report.diagnostics:
         if item.severity is Severity.ERROR:

@@ -19,7 +19,7 @@ class Sources:
         self._texts[source.filename] = source
 
     def get(self, filename: str | None) -> Source | None:
-        """The text of a file, or ``None`` if it cannot be shown."""
+        """Return the text of a file, or ``None`` if it cannot be shown."""
         if filename is None:
             return None
         if filename not in self._texts:

@@ -9,7 +9,7 @@ __all__ = ["render_statistics"]
 
 
 def render_statistics(report: Report) -> str:
-    """A line for each code, the most frequent ones first: how many, the code, ``[*]`` if ``--fix`` repairs them, its title."""
+    """Write a line for each code, the most frequent ones first: its number of diagnostics, the code, ``[*]`` if ``--fix`` repairs them, its title."""
     counts = Counter(item.code for item in report.diagnostics)
     repaired = {item.code for item in report.diagnostics if item.fix is not None and item.fix.certain}
     width = len(str(max(counts.values(), default=0)))

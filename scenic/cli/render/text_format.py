@@ -30,7 +30,7 @@ _BEFORE: Final = 60
 
 
 def render_text(diagnostics: Sequence[Diagnostic], sources: Sources, colour: bool) -> str:
-    """One block per diagnostic, with an empty line after each."""
+    """Write one block for each diagnostic, with an empty line after each."""
     blocks = []
     for diagnostic in diagnostics:
         lines = _block(diagnostic, sources.get(diagnostic.filename), _Paint(colour))

@@ -36,7 +36,7 @@ def mesh_file(solid: Solid) -> tuple[str, bytes]:
 
 
 def texture_coordinates(solid: Solid) -> npt.NDArray[np.float64]:
-    """Texture coordinates ``(f, 3, 2)`` of the triangles of a solid with an image."""
+    """Return the texture coordinates ``(f, 3, 2)`` of the triangles of a solid with an image."""
     assert solid.texture is not None
     return image_coordinates(solid.mesh, solid.texture, solid.size, solid.thing.shape.source.as_dict())
 

@@ -46,7 +46,7 @@ def choose(call: Call, masks: Sequence[Column], columns: Sequence[Column], *, fi
 
 
 def hull_of_possible(options: Sequence[Bounds | None], possible: Sequence[Column]) -> Bounds | None:
-    """Bounds of a value that is one of the options that are possible, box by box.
+    """Return, box by box, the bounds of a value that is one of the options that are possible.
 
     ``None`` where a possible option is no number or vector, or options are of different shapes.
     """
@@ -68,7 +68,7 @@ def hull_of_possible(options: Sequence[Bounds | None], possible: Sequence[Column
 
 
 def can_give(option: Bounds | None, result: Bounds) -> Column:
-    """In which boxes an option's bounds and the result's have a value in common."""
+    """Return the mask of the boxes in which the bounds of an option and of the result have a value in common."""
     if option is None or option.lower.shape[1:] != result.lower.shape[1:]:
         return np.ones(1, dtype=np.bool_)
     return ~option.meet(result).empty()

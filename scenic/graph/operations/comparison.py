@@ -43,7 +43,7 @@ def _order(function: Callable[[Any, Any], Any], symbol: str) -> Callable[[Call, 
 
 
 def _numbers(call: Call, function: Callable[[Any, Any], Any], a: Column, b: Column) -> Column:
-    """Exactly as Python: an integer is compared with a float by value, not after rounding."""
+    """Compare two columns exactly as Python does: an integer is compared with a float by value, not after rounding."""
     if a.dtype == b.dtype or are_exact(a, b):
         return np.asarray(function(a, b))
     return lane_by_lane(call, function, np.bool_, a, b)

@@ -39,7 +39,7 @@ def _hypot(_call: Call, *sides: Column) -> Column:
 
 
 def _wave_bounds(peak: float) -> Callable[[Any, Bounds], Bounds]:
-    """Bounds of the periodic function that reaches 1 at ``peak`` (plus whole turns) and -1 half a turn later."""
+    """Return a function for the bounds of a wave that reaches 1 at ``peak`` (plus whole turns) and -1 half a turn later."""
 
     def bounds(_payload: object, angle: Bounds) -> Bounds:
         # Positions in turns since the peak; a margin covers the rounding of large angles.
@@ -79,7 +79,7 @@ def _wave_solver(terms: Terms, _payload: object, _angle: object) -> Any:
 
 
 def length_bounds(parts: Any) -> Bounds:
-    """Bounds of the length of a vector from those of its components."""
+    """Return the bounds of the length of a vector from those of its components."""
     length = intervals.square_root(intervals.total([intervals.square(part) for part in parts]))
     length = intervals.relaxed(length, 1e-15)
     return Bounds(np.maximum(length.lower, 0.0), length.upper)

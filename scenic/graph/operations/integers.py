@@ -90,7 +90,7 @@ def _int_kind(operands: Sequence[Node], payload: object) -> Kind:
 
 
 def _whole(values: Column) -> Column:
-    """Floats to integers; lanes that failed before may hold anything, also what no integer holds."""
+    """Convert floats to integers; lanes that failed before may contain any number, even one that no integer represents."""
     return np.where(np.abs(values) < 2.0**62, values, 0.0).astype(np.int64)
 
 

@@ -27,24 +27,24 @@ def collapsed(bounds: Bounds, like: Bounds) -> Bounds:
 
 
 def where(mask: Mask, bounds: Bounds) -> Bounds:
-    """``bounds`` in the boxes of ``mask``, nothing in the others."""
+    """Return ``bounds`` in the boxes of ``mask`` and infinite bounds in the others."""
     if bounds.lower.ndim > mask.ndim:
         mask = mask[:, np.newaxis]
     return Bounds(np.where(mask, bounds.lower, -np.inf), np.where(mask, bounds.upper, np.inf))
 
 
 def certain(result: Bounds) -> tuple[Mask, Mask]:
-    """In which boxes a truth value is known to be true, and in which false."""
+    """Return the mask of the boxes in which a truth value is certainly true, and that of those in which it is certainly false."""
     return result.lower > 0, result.upper < 1
 
 
 def truth(true: Mask, false: Mask) -> Bounds:
-    """Bounds of a truth value from the boxes where it certainly holds and where it certainly does not."""
+    """Return the bounds of a truth value from the boxes where it certainly holds and where it certainly does not."""
     return Bounds(true.astype(np.float64), np.logical_not(false).astype(np.float64))
 
 
 def sides(length: Bounds, parts: Sequence[Bounds]) -> list[Bounds]:
-    """Bounds of the components of a vector whose length is known.
+    """Return the bounds of the components of a vector from the bounds of its length.
 
     The others' squares are taken away from the square of the length; what remains bounds each component, from below only
     where its sign is known.

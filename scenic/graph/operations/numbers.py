@@ -46,7 +46,7 @@ def where_defined(reading: BoundsReading, *vectors: tuple[bool, ...]) -> BoundsR
 
 
 def as_integers(column: Column) -> Column:
-    """Booleans as the integers that they are in Python's arithmetic; other numbers unchanged."""
+    """Convert booleans to the integers that they are in Python's arithmetic; return other numbers unchanged."""
     return column.astype(np.int64) if column.dtype == np.bool_ else column
 
 

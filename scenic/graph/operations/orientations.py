@@ -60,7 +60,7 @@ _SLACK = 1e-14
 
 
 def _unit(parts: Sequence[Bounds]) -> Bounds:
-    """Bounds of a unit quaternion from those of its components as computed without rounding."""
+    """Return the bounds of a unit quaternion from those of its components, which were computed without rounding."""
     bounds = intervals.widened(intervals.stacked(parts), _SLACK)
     one = 1 + 1e-9
     return Bounds(np.clip(bounds.lower, -one, one), np.clip(bounds.upper, -one, one))
@@ -131,7 +131,7 @@ def _conjugated(bounds: Bounds) -> Bounds:
 
 
 def matrix(orientation: Bounds) -> Bounds:
-    """Bounds ``(m, 3, 3)`` of the rotation matrix."""
+    """Return the bounds ``(m, 3, 3)`` of the rotation matrix of an orientation."""
     x, y, z, w = intervals.components(orientation)
     xx, yy, zz = intervals.components(
         intervals.square(Bounds(orientation.lower[:, :3], orientation.upper[:, :3]))
@@ -156,12 +156,12 @@ _DIAGONAL: Final = np.eye(3, dtype=np.bool_).ravel()
 
 
 def turned(orientation: Bounds, vector: Bounds) -> Bounds:
-    """Bounds ``(m, 3)`` of vectors turned by orientations."""
+    """Return the bounds ``(m, 3)`` of vectors turned by orientations."""
     return turned_by(matrix(orientation), vector)
 
 
 def turned_by(rotation: Bounds, vector: Bounds) -> Bounds:
-    """Bounds ``(m, 3)`` of vectors turned by rotation matrices ``(m, 3, 3)``."""
+    """Return the bounds ``(m, 3)`` of vectors turned by rotation matrices ``(m, 3, 3)``."""
     parts = intervals.components(vector)
     products = intervals.multiply(rotation, Bounds(vector.lower[:, np.newaxis], vector.upper[:, np.newaxis]))
     result = intervals.total(

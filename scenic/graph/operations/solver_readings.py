@@ -38,7 +38,7 @@ def conjunction(conditions: Sequence[Any]) -> Any:
 
 
 def disjunction(conditions: Sequence[Any]) -> Any:
-    """Any of one or more boolean terms."""
+    """Return the disjunction of one or more boolean terms."""
     result = conditions[0]
     for condition in conditions[1:]:
         result = result | condition

@@ -185,7 +185,7 @@ def _distance_solver(terms: Terms, _payload: object, a: Any, b: Any) -> Any:
 
 
 def _angle_bounds(across: Bounds, along: Bounds) -> Bounds:
-    """Bounds of ``atan2(across, along)``: from the corners, unless the box touches the cut or the origin."""
+    """Return bounds of ``atan2(across, along)``, from the corners unless the box touches the cut or the origin."""
     corners = [np.arctan2(y, x) for y in (across.lower, across.upper) for x in (along.lower, along.upper)]
     lower = np.minimum(np.minimum(corners[0], corners[1]), np.minimum(corners[2], corners[3]))
     upper = np.maximum(np.maximum(corners[0], corners[1]), np.maximum(corners[2], corners[3]))

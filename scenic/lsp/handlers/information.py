@@ -46,7 +46,7 @@ def place_of(session: Session, params: Placed) -> tuple[Document, int, int]:
 
 
 def markup(session: Session, text: str, path: str) -> types.MarkupContent:
-    """Markdown for a client that shows it, and otherwise without its marks; ``path`` leads to the formats it lists."""
+    """Return Markdown for a client that shows it, and otherwise plain text; ``path`` leads to the formats that the client lists."""
     formats = session.lists(path)
     if formats and types.MarkupKind.Markdown not in formats:
         plain = text.replace("```scenic\n", "").replace("```python\n", "").replace("\n```", "")

@@ -52,7 +52,7 @@ class Condition:
 
 
 def connected(operation: str, parts: Sequence[Condition]) -> Condition:
-    """``and`` or ``or``."""
+    """Return the condition that joins the parts by ``and`` or ``or``."""
     tree: Tree = (operation, *(part.tree for part in parts))
     builds = [part.build for part in parts if part.build is not None]
     sures = [part.sure for part in parts if part.sure is not None]
@@ -69,7 +69,7 @@ def connected(operation: str, parts: Sequence[Condition]) -> Condition:
 
 
 def negated(part: Condition) -> Condition:
-    """``not``: it may hold where the part is not sure to."""
+    """Return the negated condition: it may hold where the part is not certain to hold."""
     tree: Tree = ("not", part.tree)
     may, certain = part.build, part.sure
     if may is None or certain is None:
@@ -185,7 +185,7 @@ def truth(value: object) -> Node:
 
 
 def connect(operation: str, conditions: Sequence[Node]) -> Node:
-    """``and``, ``or`` or ``not`` of conditions."""
+    """Return the node that joins conditions by ``and``, ``or`` or ``not``."""
     return make_node(TABLE[operation], conditions, span=here())
 
 

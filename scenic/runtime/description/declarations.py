@@ -74,7 +74,7 @@ class Closure:
         return self.function(*self.captured)
 
     def random_parts(self) -> list[Any]:
-        """Values in it that may be random."""
+        """Return the values in the closure that may be random."""
         return [self.function, *self.captured]
 
 
@@ -171,7 +171,7 @@ class Declared:
         )
 
     def random_parts(self) -> list[Any]:
-        """Values in it that may be random, for sampling."""
+        """Return the values in the declarations that may be random, for sampling."""
         parts: list[Any] = [item.monitor for item in self.monitors]
         for item in self.ends:
             parts += item.condition.random_parts()

@@ -116,7 +116,7 @@ class Invocable:
         _check_numbers(self._definition, given)
 
     def random_parts(self) -> list[Any]:
-        """Values in it that may be random, for sampling."""
+        """Return the values in the invocable that may be random, for sampling."""
         return [*self._arguments.arguments.values(), *self.__dict__.values(), *self._definition.functions]
 
     def sampled(self, sample: Any) -> "Invocable":

@@ -111,7 +111,7 @@ class Program:
         return self.overrides.get(name, self.parameters.get(name, default))
 
     def reachable(self) -> Iterator[Any]:
-        """Values of which simulations need samples."""
+        """Yield the values of which simulations need samples."""
         yield from self.objects
         yield from self.instances
         yield from self.parameters.values()

@@ -36,25 +36,25 @@ def _for_python(function: Callable[..., Any]) -> Callable[[Callable[..., Any]], 
 
 @_for_python(math.sin)
 def sin(x: object) -> Any:
-    """Sine of an angle in radians."""
+    """Return the sine of an angle in radians."""
     return _of_numbers("sin", x)
 
 
 @_for_python(math.cos)
 def cos(x: object) -> Any:
-    """Cosine of an angle in radians."""
+    """Return the cosine of an angle in radians."""
     return _of_numbers("cos", x)
 
 
 @_for_python(math.tan)
 def tan(x: object) -> Any:
-    """Tangent of an angle in radians."""
+    """Return the tangent of an angle in radians."""
     return _of_numbers("tan", x)
 
 
 @_for_python(math.hypot)
 def hypot(*coordinates: Any) -> Any:
-    """Euclidean length of a vector given by its coordinates."""
+    """Return the Euclidean length of a vector given by its coordinates."""
     return _of_numbers("hypot", *coordinates)
 
 
@@ -105,7 +105,7 @@ def round(number: Any, ndigits: Any = None) -> Any:
 
 @_for_python(builtins.len)
 def len(value: Any) -> Any:
-    """Python's ``len``, also of random containers."""
+    """Return what Python's ``len`` does; the container may be random."""
     if isinstance(value, Lazy):
         return defer(len, value)
     return operate("len", value) if isinstance(value, Random) else builtins.len(value)
@@ -162,7 +162,7 @@ def _kept(function: Callable[[Any], Any] | None, values: Any) -> list[Any]:
 
 
 def range(*bounds: Any) -> Any:
-    """Python's ``range``; raises `RandomControlFlowError` for random bounds."""
+    """Return Python's ``range``; raises `RandomControlFlowError` for random bounds."""
     if any(is_random(bound) for bound in bounds):
         raise RandomControlFlowError(
             "`range` needs definite bounds",
@@ -174,7 +174,7 @@ def range(*bounds: Any) -> Any:
 
 
 def convert(name: str, *given: Any) -> Any:
-    """``int``, ``float`` and ``str`` as calls in programs, also of random values."""
+    """Call ``int``, ``float`` or ``str`` for a program; the arguments may be random."""
     if is_lazy(given):
         return defer(convert, name, *given)
     function: Callable[..., Any] = {"int": int, "float": float, "str": str}[name]
@@ -209,7 +209,7 @@ def verbosePrint(
     file: Any = None,
     flush: bool = False,
 ) -> None:
-    """Python's ``print`` where the verbosity is at least ``level``; indented, so that it stands out from results."""
+    """Print as Python does where the verbosity is at least ``level``; the text is indented, so that it stands out from results."""
     if verbosity.get() >= level:
         text = sep.join(map(builtins.str, values))
         lead = "  " if indent else ""

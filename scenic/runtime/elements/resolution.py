@@ -158,7 +158,7 @@ def _reads(offered: Mapping[str, object], names: Sequence[str]) -> frozenset[str
 
 
 def resolution_of(cls: type[Point], specifiers: Sequence[Specifier], *, mode_2d: bool) -> Resolution:
-    """As `resolve`; what has been resolved for the class before is not resolved again."""
+    """Resolve specifiers as `resolve` does, but only once for each class and list of specifiers."""
     kinds = tuple(
         [
             item.kind or kind_of_specifier(item.name, item.priorities, item.dependencies, item.modifiable)

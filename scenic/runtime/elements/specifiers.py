@@ -205,7 +205,7 @@ def in_(region: Region, *, name: str = "in") -> Specifier:
 
 
 def on(target: object) -> Specifier:
-    """Section 6.3: the base point touches the target, with a gap of half the contact tolerance."""
+    """Place the base point of an object on the target (section 6.3), with a gap of half the contact tolerance."""
 
     def base(instance: Any, _: bool) -> tuple[Any, Mapping[str, Any]]:
         gap = vector(0, 0, operate("divide", instance.contactTolerance, 2))
@@ -429,7 +429,7 @@ def apparently_facing(angle: object, observer: object) -> Specifier:
 
 
 def visible(workspace: Region, observer: object, *, wanted: bool = True) -> Specifier:
-    """Section 11.4: the observer who must see the object, or must not; and, without another position, any position in its container."""
+    """Require that the observer sees the object, or does not (section 11.4); without another position, it may be anywhere in its container."""
     name = "visible" if wanted else "not visible"
     context = current.get()
     mode_2d = context is not None and context.mode_2d
@@ -510,7 +510,7 @@ class UserSpecifier:
         self.__name__ = function.__name__
 
     def __call__(self, *arguments: Any) -> Specifier:
-        """The specifier with these arguments."""
+        """Return the specifier with these arguments."""
 
         def evaluate(instance: Any) -> Mapping[str, Any]:
             offered = self.function(instance, *(resolve(argument, instance) for argument in arguments))

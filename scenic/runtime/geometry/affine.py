@@ -35,7 +35,7 @@ class AffineMaps:
         return result
 
     def reaches(self, half: Columns) -> Floats:
-        """Half the extents ``(3, ..., n)`` of the boxes around the images of boxes of half extents ``(..., n)``."""
+        """Return half the extents ``(3, ..., n)`` of the boxes around the images of boxes of half extents ``(..., n)``."""
         x, y, z = half
         matrix = np.abs(self.matrix).reshape(3, 3, *(1,) * (x.ndim - 1), -1)
         result: Floats = matrix[:, 0] * x + matrix[:, 1] * y + matrix[:, 2] * z
@@ -54,7 +54,7 @@ class AffineMaps:
 
 
 def taken(columns: Columns, chosen: Indices) -> Columns:
-    """These elements of each column."""
+    """Return the chosen elements of each column."""
     if isinstance(columns, np.ndarray):
         return columns.take(chosen, axis=1)
     x, y, z = columns

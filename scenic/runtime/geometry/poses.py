@@ -94,7 +94,7 @@ class Poses:
         return self.directions_to_unit(points - _spread(self.position, points))
 
     def directions_to_unit(self, vectors: Floats) -> Floats:
-        """World vectors ``(n | 1, ..., 3)`` in the unit frame, where their lengths change."""
+        """Return world vectors ``(n | 1, ..., 3)`` in the unit frame, where their lengths change."""
         matrix = self.matrix.reshape(len(self.matrix), *(1,) * (vectors.ndim - 2), 3, 3)
         size = _spread(self.size, vectors)
         x, y, z = vectors[..., 0], vectors[..., 1], vectors[..., 2]

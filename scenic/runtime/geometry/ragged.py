@@ -63,7 +63,7 @@ def pieces(counts: Indices, most: int) -> Iterator[slice]:
 
 
 def rows(count: int, width: int, most: int) -> Iterator[slice]:
-    """Slices of ``count`` rows that hold about ``most`` elements each at ``width`` elements a row."""
+    """Yield slices of ``count`` rows; each contains about ``most`` elements at ``width`` elements a row."""
     step = max(1, most // max(width, 1))
     for start in range(0, count, step):
         yield slice(start, min(start + step, count))

@@ -48,7 +48,7 @@ def digest_of(*arrays: npt.NDArray[Any]) -> bytes:
 def kept(
     kind: str, content: bytes, compute: Callable[[], Arrays], *, read: bool = True, write: bool = True
 ) -> Arrays:
-    """``compute()``, or what an earlier run got from it.
+    """Return ``compute()``, or the result that an earlier run stored.
 
     Args:
         kind: a name and a version of what is computed; a new version whenever the result changes.
@@ -67,7 +67,7 @@ def kept(
 
 
 def find(kind: str, content: bytes) -> Arrays | None:
-    """Arrays that an earlier run left; the arguments are those of `kept`."""
+    """Return the arrays that an earlier run stored, ``None`` where there are none; the arguments are those of `kept`."""
     path = _path(kind, content)
     return None if path is None else _read(path)
 

@@ -6,13 +6,13 @@ from scenic.runtime.geometry.poses import Floats
 
 
 def dot(a: Floats, b: Floats) -> Floats:
-    """Inner products, ``(...)``."""
+    """Return the inner products ``(...)`` of vectors."""
     result: Floats = a[..., 0] * b[..., 0] + a[..., 1] * b[..., 1] + a[..., 2] * b[..., 2]
     return result
 
 
 def length(a: Floats) -> Floats:
-    """Lengths, ``(...)``."""
+    """Return the lengths ``(...)`` of vectors."""
     return np.sqrt(dot(a, a))
 
 

@@ -57,7 +57,7 @@ def named(path: Path, suffix: str) -> Path:
 
 @contextmanager
 def whole(path: Path) -> Iterator[BinaryIO]:
-    """A binary file that gets the name ``path`` when the block ends well and vanishes when it does not.
+    """Open a binary file that gets the name ``path`` when the block ends well and vanishes when it does not.
 
     Links are followed, so a link keeps pointing where it did. Devices and pipes are written to directly. The permissions are those of
     the file replaced, else the usual ones of a new file.

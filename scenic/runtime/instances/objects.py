@@ -342,22 +342,22 @@ class Object(OrientedPoint):
 
     @Yielding
     def hw(self) -> Any:
-        """Half the width, in metres."""
+        """Return half the width, in metres."""
         return operate("divide", self.width, 2)
 
     @Yielding
     def hl(self) -> Any:
-        """Half the length, in metres."""
+        """Return half the length, in metres."""
         return operate("divide", self.length, 2)
 
     @Yielding
     def hh(self) -> Any:
-        """Half the height, in metres."""
+        """Return half the height, in metres."""
         return operate("divide", self.height, 2)
 
     @Yielding
     def radius(self) -> Any:
-        """Half the diagonal of the bounding box, in metres."""
+        """Return half the diagonal of the bounding box, in metres."""
         return operate("divide", operate("norm", vector(self.width, self.length, self.height)), 2)
 
     @property
@@ -385,7 +385,7 @@ class Object(OrientedPoint):
         return planar_inradius(self)
 
     def distanceTo(self, point: object) -> Any:
-        """Distance from the space that it fills to a point; 0 inside."""
+        """Return the distance from the space that the object fills to a point; 0 inside."""
         return self.occupiedSpace.distanceTo(point)
 
     def containsPoint(self, point: object) -> Any:
@@ -422,7 +422,7 @@ class Object(OrientedPoint):
         return self.topSurface
 
     def startDynamicSimulation(self) -> None:
-        """Called when the object is created in a simulation; does nothing unless a class overrides it."""
+        """Do nothing; a class may override this method, which is called when the object is created in a simulation."""
 
     def _side(self, name: str) -> Any:
         return per_option(

@@ -288,11 +288,11 @@ class Prelude(Symbolic, Dynamics):
         raise UnsupportedError(f"the operator `{name}` is not supported yet", span=here())
 
     def convert(self, name: str, *args: Any) -> Any:
-        """``int(x)``, ``float(x)``, ``str(x)``."""
+        """Evaluate ``int(x)``, ``float(x)`` or ``str(x)``."""
         return convert(name, *args)
 
     def spread(self, function: Any, parts: Sequence[tuple[bool, Any]], keywords: Mapping[str, object]) -> Any:
-        """``function(a, *b, k=c)``; ``parts`` marks the starred arguments."""
+        """Evaluate ``function(a, *b, k=c)``; ``parts`` marks the starred arguments."""
         return spread(function, parts, keywords)
 
     sliceable = staticmethod(sliceable)
@@ -300,7 +300,7 @@ class Prelude(Symbolic, Dynamics):
     # Statements
 
     def param(self, values: Mapping[str, object]) -> None:
-        """``param name = value, ...``."""
+        """Execute ``param name = value, ...``."""
         if self._context.evaluating or not self._context.is_symbolic:
             raise InvalidScenarioError(
                 "parameters cannot be set here",
@@ -318,21 +318,21 @@ class Prelude(Symbolic, Dynamics):
                     self._context.parameters.places[name] = self._context.place(), self._context.file()
 
     def model(self, name: str, scope: dict[str, Any]) -> None:
-        """``model name``: everything that the module defines, with its parameters as defaults."""
+        """Execute ``model name``: define everything that the module defines, with its parameters as defaults."""
         if self._module.is_model:
             raise InvalidScenarioError("a model cannot itself use `model`", span=here())
         self._context.parameters.model_place = self._context.place(), self._context.file()
         self._modules.use_model(name, scope, self._module)
 
     def assigned(self, owner: object, name: str) -> None:
-        """``owner.name = value``, after the fact: a property of an instance of the program is checked as by ``with``."""
+        """Check the property that ``owner.name = value`` has just set on an instance of the program, as ``with`` does."""
         if isinstance(owner, Point) and self._run is None and self._context.sample is None:
             check_assigned(owner, name, mode_2d=self._context.mode_2d)
             if name == "behavior" and isinstance(owner, Object):
                 owner.__dict__[name] = per_option(owner.behavior, behavior_of)
 
     def mutate(self, targets: Sequence[Any] | None = None, scale: object = 1) -> None:
-        """``mutate a, b by scale``; without targets all objects so far."""
+        """Execute ``mutate a, b by scale``; without targets it mutates all objects so far."""
         if self._context.evaluating:
             raise InvalidScenarioError(
                 "a requirement cannot mutate objects", span=here(), help="mutate them before or after it"
@@ -347,11 +347,11 @@ class Prelude(Symbolic, Dynamics):
             run.check_mutable(instances)
 
     def simulator(self, make: Callable[[], Any]) -> None:
-        """``simulator expr``: stored, and evaluated when a simulator is needed."""
+        """Store the expression of ``simulator expr``, which is evaluated when a simulator is needed."""
         self._program.simulator = make
 
     def require(self, condition: Condition, *, probability: float | None = None, name: object = None) -> None:
-        """``require condition``: recorded while compiling, checked or followed during a simulation."""
+        """Execute ``require condition``: record the condition while the program is compiled, check or follow it during a simulation."""
         if self._context.evaluating:
             raise InvalidScenarioError(
                 "a requirement cannot contain another one",
@@ -405,15 +405,15 @@ class Prelude(Symbolic, Dynamics):
         return Condition(closure, build)
 
     def conjunction(self, *parts: Condition) -> Condition:
-        """``and``."""
+        """Join conditions by ``and``."""
         return conditions.connected("and", parts)
 
     def disjunction(self, *parts: Condition) -> Condition:
-        """``or``."""
+        """Join conditions by ``or``."""
         return conditions.connected("or", parts)
 
     def negation(self, part: Condition) -> Condition:
-        """``not``."""
+        """Negate a condition."""
         return conditions.negated(part)
 
     def temporal(self, operator: str, *parts: Condition) -> Condition:

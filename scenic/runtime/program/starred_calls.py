@@ -28,7 +28,7 @@ Parts = Sequence[tuple[bool, Any]]
 
 
 def spread(function: Callable[..., Any], parts: Parts, keywords: Mapping[str, object]) -> Any:
-    """``function(a, *b, k=c)``.
+    """Call ``function(a, *b, k=c)``, where starred arguments may be random.
 
     ``Uniform(*xs)`` of a random list draws one of its elements, each equally likely; a sample in which it has none is
     rejected. Any other function is called with the sampled arguments.

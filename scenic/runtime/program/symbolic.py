@@ -71,7 +71,7 @@ class Symbolic:
         return getattr(value, name)(*args)
 
     def compare(self, operator: str, left: object, right: object) -> Any:
-        """``left operator right`` as a truth value, which may be random."""
+        """Evaluate ``left operator right`` to a truth value, which may be random."""
         if may_return_instances(left) or may_return_instances(right):
             return call_later(TABLE[_COMPARISONS[operator]].python, left, right)
         if any(is_answered_by_code(item, _OF_ORDER) for item in (left, right)):
@@ -83,7 +83,7 @@ class Symbolic:
         return operate(_COMPARISONS[operator], left, right)
 
     def identical(self, left: object, right: object) -> Any:
-        """``left is right`` of instances, of objects that never change, and of random choices among these."""
+        """Evaluate ``left is right`` for instances, for objects that never change, and for random choices among these."""
         if all(item is None or isinstance(item, Point) for item in (left, right)):
             return left is right  # so are their samples
         nodes = [as_node(left), as_node(right)]
@@ -92,7 +92,7 @@ class Symbolic:
         return apply(IDENTITY, left, right)
 
     def contains(self, item: object, container: object) -> Any:
-        """``item in container``: containment in a region, else Python's."""
+        """Evaluate ``item in container`` for a region; other containers are left to Python."""
         region = as_region(container)
         # Of a value that is unknown until it is drawn, the draw has to tell whether all of it has to lie in the region.
         if region is None or is_unknown(item):
@@ -100,15 +100,15 @@ class Symbolic:
         return region.containsObject(item) if is_kind(item, Object) else region.containsPoint(item)
 
     def all_of(self, *values: Any) -> Any:
-        """``and`` of truth values inside an expression."""
+        """Evaluate ``and`` of truth values inside an expression."""
         return self._logic("and", values)
 
     def any_of(self, *values: Any) -> Any:
-        """``or`` of truth values inside an expression."""
+        """Evaluate ``or`` of truth values inside an expression."""
         return self._logic("or", values)
 
     def invert(self, value: object) -> Any:
-        """``not`` of a truth value inside an expression."""
+        """Evaluate ``not`` of a truth value inside an expression."""
         if isinstance(value, bool):
             return not value
         return as_value(connect("not", [truth(value)]))
@@ -136,7 +136,7 @@ class Symbolic:
         return unrolling.perhaps(test, make)
 
     def number_of(self, length: object, values: list[Any]) -> Any:
-        """``len([...])`` of a comprehension; ``length`` is what the program has under the name."""
+        """Evaluate ``len([...])`` of a comprehension; ``length`` is what the program has under the name ``len``."""
         self.provided("len", length)
         return unrolling.number_of(values)
 
@@ -145,21 +145,21 @@ class Symbolic:
         return unrolling.occurrences(values, value)
 
     def items_of(self, container: object, view: str) -> list[Any]:
-        """``container.values()``, ``keys()`` or ``items()`` of a dictionary."""
+        """Evaluate ``container.values()``, ``keys()`` or ``items()`` of a dictionary."""
         return unrolling.items_of(container, view)
 
     def ascending(self, function: object, values: object) -> Any:
-        """``values == sorted(values)``; ``function`` is what the program has under the name ``sorted``."""
+        """Evaluate ``values == sorted(values)``; ``function`` is what the program has under the name ``sorted``."""
         self.provided("sorted", function)
         return unrolling.ascending(values)
 
     def over(self, name: str, function: object, values: object) -> Any:
-        """``all``, ``any``, ``sum``, ``min`` or ``max`` of fixed sequences."""
+        """Evaluate ``all``, ``any``, ``sum``, ``min`` or ``max`` of fixed sequences."""
         self.provided(name, function)
         return unrolling.over(name, values)
 
     def differ(self, length: object, made: object, values: object, count: object) -> Any:
-        """``len(set(values)) == count``; ``length`` and ``made`` are what the program has under the two names."""
+        """Evaluate ``len(set(values)) == count``; ``length`` and ``made`` are what the program has under the names ``len`` and ``set``."""
         self.provided("len", length)
         self.provided("set", made)
         return unrolling.differ(values, count)
@@ -169,7 +169,7 @@ class Symbolic:
         return constructed(self.provided(name, function), *args, **keywords)
 
     def choose(self, test: Condition, then: Callable[[], Any], otherwise: Callable[[], Any]) -> Any:
-        """``then if test else otherwise``."""
+        """Evaluate ``then if test else otherwise``."""
         assert test.build is not None
         node = test.build()
         if node.is_constant:

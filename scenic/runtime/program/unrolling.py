@@ -97,7 +97,7 @@ def occurrences(values: object, value: object) -> Any:
 
 
 def items_of(container: object, view: str) -> list[Any]:
-    """``values()``, ``keys()`` or ``items()`` of a dictionary, noting what the program may still change."""
+    """List ``values()``, ``keys()`` or ``items()`` of a dictionary, and record what the program may still change."""
     if type(container) is not dict:
         raise NotSymbolicError
     context = current.get()
@@ -118,7 +118,7 @@ def ascending(values: object) -> Any:
 
 
 def over(name: str, values: object) -> Any:
-    """``all``, ``any``, ``sum``, ``min`` or ``max`` of the elements of a fixed sequence."""
+    """Evaluate ``all``, ``any``, ``sum``, ``min`` or ``max`` of the elements of a fixed sequence."""
     elements = _fixed(values)
     if name in _WITH_NEUTRAL_ELEMENT:
         convert: Callable[[Any], Node] = as_node if name == "sum" else truth
@@ -150,7 +150,7 @@ def over(name: str, values: object) -> Any:
 
 
 def differ(values: object, count: object) -> Any:
-    """``len(set(values)) == count`` where it means that all elements of a fixed sequence differ."""
+    """Evaluate ``len(set(values)) == count`` where it means that all elements of a fixed sequence differ."""
     elements = _fixed(values)
     if type(count) is not int or count != len(elements) or count * (count - 1) // 2 > MOST:
         raise NotSymbolicError

@@ -157,7 +157,7 @@ def localPath(relpath: str) -> Path:
 
 
 def in_initial_scenario() -> bool:
-    """``initial scenario`` of the language."""
+    """Evaluate ``initial scenario`` of the language."""
     language = _language()
     return True if language is None else bool(language.operation("initial scenario"))
 

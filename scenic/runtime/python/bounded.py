@@ -54,7 +54,7 @@ def bounded(reading: Callable[..., tuple[Any, ...]]) -> Callable[[_Told], _Told]
 def bounds_of_call(
     function: Callable[..., Any], args: Sequence[object], known: Callable[[Any], Bounds | None]
 ) -> Bounds | None:
-    """Bounds of what a function gives, box by box, if it is a `bounded` one.
+    """Return bounds of the result of a function, box by box, if it is a `bounded` one.
 
     Args:
         function: the function.
@@ -122,7 +122,7 @@ def _no_interval(found: object, wanted: str) -> InvalidScenarioError:
 
 
 def bounds_of_support(support: Callable[[], Any]) -> Bounds | None:
-    """Bounds of what a distribution of the program's own draws, by its `supportInterval`; ``None`` where that fails."""
+    """Return bounds of a draw from a distribution of the program's own, by its `supportInterval`; ``None`` where that fails."""
     try:
         low, high = support()
         ends = (-math.inf if low is None else float(low), math.inf if high is None else float(high))

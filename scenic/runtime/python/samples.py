@@ -249,7 +249,7 @@ def mentions(code: CodeType, word: str) -> bool:
 
 
 def reachable(values: Iterable[object], names: Globals) -> Iterator[Any]:
-    """Everything that the values are made of as far as sampling goes, themselves included, each once."""
+    """Yield the values and all that they are made of, as far as sampling reads it, each once."""
     values_by_identity: dict[int, Any] = {}
     stack = list(values)[::-1]
     while stack:

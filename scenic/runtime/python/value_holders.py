@@ -12,7 +12,7 @@ class Carrier:
     """A holder that a program may make of random values or instances, or of functions that read some."""
 
     def random_parts(self) -> list[Any]:
-        """Values in it that may be random, for sampling."""
+        """Return the values in the holder that may be random, for sampling."""
         return [type(self), *_held(self).values()]
 
     def sampled(self, sample: Any) -> Any:

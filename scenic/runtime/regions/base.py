@@ -178,7 +178,7 @@ class Region(metaclass=_RegionType):
     def draw_points_in(
         self, lower: Points, upper: Points, uniforms: Column, keys: Column, *columns: Column
     ) -> tuple[Points, Mask | None]:
-        """As `draw_points`, from a part of the region that holds all of its points in boxes ``(n, 3)``; here, from all of it."""
+        """Draw points as `draw_points` does, but from a part of the region that contains all of its points in boxes ``(n, 3)``; this method draws from the whole region."""
         return self.draw_points(uniforms, keys, *columns)
 
     def orientations(self, points: Points, *columns: Column) -> Column:
@@ -219,7 +219,7 @@ class Region(metaclass=_RegionType):
         return np.full((1, 3), -np.inf), np.full((1, 3), np.inf)
 
     def container_box(self, *columns: Column) -> tuple[Points, Points]:
-        """As `box`, of the region as a container: one in the plane holds what is above and below it."""
+        """Return the box of the region as a container: a region in the plane contains the space above and below it."""
         lower, upper = self.box(*columns)
         if self.dimension == 2:
             found = at_any_height(Bounds(lower, upper))
@@ -227,7 +227,7 @@ class Region(metaclass=_RegionType):
         return lower, upper
 
     def tight_box(self, *columns: Column) -> tuple[Points, Points]:
-        """As `container_box`; of kinds that know a smaller one, that."""
+        """Return a box no larger than `container_box`; kinds of regions that know a smaller one override this."""
         return self.container_box(*columns)
 
     def extent(self, *parameters: Bounds | None) -> Bounds | None:
@@ -250,7 +250,7 @@ class Region(metaclass=_RegionType):
         return None
 
     def container_extent(self, *parameters: Bounds | None) -> Bounds | None:
-        """As `extent`, of the region as a container."""
+        """Return the extent of the region as a container; `container_box` says the difference."""
         columns = fixed(parameters)
         if columns is not None:
             return Bounds(*self.container_box(*columns))

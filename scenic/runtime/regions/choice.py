@@ -57,7 +57,10 @@ class RegionChoice(VaryingRegion):
         return super().uniform_placement()
 
     def project(self, point: object, direction: object) -> tuple[Any, Any]:
-        """Onto the option that is drawn; one on which the point does not land rejects only where it is drawn."""
+        """Project a point onto the option that is drawn.
+
+        An option on which the point does not land rejects only the candidates in which it is drawn.
+        """
         landings = [_landing(option, point, direction) for option in self.options]
         index = as_node(self.parameters[0])
         places, orientations = ([as_node(part) for part in parts] for parts in zip(*landings, strict=True))
@@ -129,7 +132,7 @@ class RegionChoice(VaryingRegion):
         return self._hull(parameters, found)
 
     def drawn_extent(self, numbers: Sequence[Bounds], *parameters: Bounds | None) -> Bounds | None:
-        """As `extent`, but in boxes where the index is known, of the points that these numbers draw from its option."""
+        """Return bounds of the points that the given numbers draw; in boxes where the index is known, of points of its option."""
         extent = self.extent(*parameters)
         index = parameters[0]
         if extent is None or index is None:

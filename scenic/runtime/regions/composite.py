@@ -93,10 +93,10 @@ class Composite(Region):
         return in_lane(self, lane, columns)
 
     def distances(self, points: Points, *columns: Column) -> NDArray[np.float64]:
-        """By members where the nearest point of one decides, elsewhere by what is left of the plane in each lane.
+        """Return the distances to the nearest point of a member where that decides, elsewhere to what is left of the plane in each lane.
 
-        What has neither has the distance of the closed form of the lane; `UnsupportedError` where there is none, as with
-        points and lines.
+        Lanes with neither get the distance of their closed form. Raises `UnsupportedError` where there is none, as with points
+        and lines.
         """
         lanes = max(len(points), *map(len, columns), 1)
         points = np.broadcast_to(points, (lanes, 3))
@@ -200,7 +200,7 @@ class Composite(Region):
         return self._box_of([member.extent(*mine) for member, mine in self._parts(parameters)])
 
     def container_extent(self, *parameters: Bounds | None) -> Bounds | None:
-        """Of the members as containers: one in the plane holds what is above and below it, others do not."""
+        """Combine the extents of the members as containers: a member in the plane contains the space above and below it."""
         return self._box_of([member.container_extent(*mine) for member, mine in self._parts(parameters)])
 
     @abstractmethod

@@ -442,7 +442,10 @@ def frame_at(direction: Any, position: Any, what: str) -> Any:
 
 
 def relative_to(value: Any, frame: Any) -> Lazy:
-    """``value relative to frame`` with a field: lazy, since a field means its direction where the object will be."""
+    """Return ``value relative to frame`` with a field.
+
+    The result is lazy, since a field means its direction where the object will be.
+    """
 
     def compute(instance: Any) -> Any:
         outer, inner = (

@@ -174,7 +174,7 @@ class PlanarRegion(Region):
         return Vector.of((place.x, place.y, float(self.heights(*self.fixed_columns("the nearest point"))[0])))
 
     def project(self, point: Any, direction: Any) -> tuple[Any, Any]:
-        """Vertically onto the plane; a point beside the region lands nowhere."""
+        """Project a point vertically onto the plane; a point beside the region lands nowhere."""
         target = to_vector(point)
         landed = vector(target.x, target.y, self.height)
         place = apply(_LAND, landed, *self.parameters, payload=self)

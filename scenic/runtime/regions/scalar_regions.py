@@ -54,7 +54,10 @@ class Flat:
         return None
 
     def meets_body(self, body: Placed) -> bool | None:
-        """Only what lies within the height of the plane and over the region's box can meet it."""
+        """Return whether a body certainly meets the region or is certainly apart from it, ``None`` if neither shows.
+
+        A body meets it only within the height of the plane and over the region's box.
+        """
         x, y, z = body.position
         dx, dy, dz = body.extents()
         low_x, low_y, high_x, high_y = self._box
@@ -260,7 +263,7 @@ class Ball:
         return False if meet(self._body, body) is False else None
 
     def distance(self, point: Triple) -> float | None:
-        """Not at once: it takes a root."""
+        """Return ``None``: the distance takes a root, which is not computed on plain numbers."""
         return None
 
     def _share(self, point: Triple) -> float:

@@ -134,7 +134,7 @@ class GridRegion(PointSetRegion):
         return np.asarray(inside & free)
 
     def container_box(self, *columns: Column) -> tuple[Points, Points]:
-        """Of the whole cells, at every height: a point is held by the cell in which it lies."""
+        """Return the box of the whole cells, at every height: the cell in which a point lies contains it."""
         lower, upper = self.box(*columns)
         half = np.array([abs(self.Ax) / 2, abs(self.Ay) / 2, np.inf])
         return lower - half, upper + half

@@ -179,7 +179,7 @@ class SectorRegion(PlanarRegion):
         return np.asarray((radius >= 0) & ((away == 0) | inside)), np.asarray(away <= radius)
 
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
-        """By the polygon of the sector: where that is convex by its edges, elsewhere by shapely."""
+        """Test bodies against the polygon of the sector: by its edges where it is convex, elsewhere by shapely."""
         center, radius, heading, angle = columns
         if all(len(column) == 1 for column in columns):
             polygon = self._polygon(center[0].tolist(), float(radius[0]), float(heading[0]), float(angle[0]))

@@ -30,7 +30,7 @@ def is_body(value: object) -> bool:
 
 
 def body_operands(thing: Any) -> tuple[Any, Any, Any, Any]:
-    """Position, orientation, size and shape of an object: the operands of operations on its body."""
+    """Return the operands of operations on an object's body: its position, orientation, size and shape."""
     size = vector(to_scalar(thing.width), to_scalar(thing.length), to_scalar(thing.height))
     return thing.position, thing.orientation, size, thing.shape
 

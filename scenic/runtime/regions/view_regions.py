@@ -188,7 +188,7 @@ class ViewRegion(Region):
         return region
 
     def project(self, point: object, direction: object) -> tuple[Any, Any]:
-        """As onto its mesh."""
+        """Project a point onto the mesh of the region."""
         landing: tuple[Any, Any] = generic.meshed(self).project(point, direction)
         return landing
 

@@ -123,7 +123,7 @@ def _looked(observer: Any, target: Any, occluders: Sequence[object], certain: bo
 
 
 def occluders_of(values: Any) -> tuple[Any, ...]:
-    """Objects past which something is to be seen; raises `ScenicTypeError` for anything else."""
+    """Return the objects that may hide others, as a tuple; raises `ScenicTypeError` for any other value."""
     if isinstance(values, Random) or not isinstance(values, Iterable):
         raise wrong_type("objects in a sequence", values, "what may hide others")
     things = tuple(values)
@@ -151,7 +151,7 @@ def _is_turned(observer: Any) -> bool:
 
 
 def view_operands(observer: Any) -> tuple[Any, ...]:
-    """Everything that describes an observer's view, for `views_of`; of a random choice, each value is one."""
+    """Return the values that describe an observer's view, for `views_of`; for a random choice of observers each is a choice."""
     if options_of(observer):
         return tuple(per_option(observer, partial(_view_operand, number)) for number in range(VIEW_OPERANDS))
     camera, orientation = camera_of(observer)

@@ -200,7 +200,7 @@ class VoxelRegion(Region):
         return MeshVolumeRegion(surface, centerMesh=False, orientation=self.orientation, name=self.name)
 
     def distances(self, points: Points, *columns: Column) -> NDArray[np.float64]:
-        """To the nearest filled cell: among those whose centres are nearest, by at most a cell's diagonal."""
+        """Return the distances to the nearest filled cell: its centre is within a cell's diagonal of being the nearest."""
         from scipy.spatial import KDTree
 
         centres = self.corner + (self._cells + 0.5) * self.pitch
@@ -227,7 +227,7 @@ class VoxelRegion(Region):
         return np.array([len(self._cells) * float(self.pitch.prod())])
 
     def dilation(self, iterations: int, structure: Any = None) -> Region:
-        """The region after repeatedly adding the cells that touch a filled one, or removing them if the number is negative; `nowhere` if nothing is left.
+        """Return the region with the cells added that touch a filled one, repeatedly, or removed if ``iterations`` is negative; `nowhere` if nothing is left.
 
         Args:
             iterations: how often.

@@ -72,7 +72,7 @@ class Outline:
 
 
 def outline(program: Program, ego: Object | None, workspace: Workspace, *, mode_2d: bool) -> Outline:
-    """Everything that a scene must satisfy.
+    """Collect the conditions that every scene must satisfy.
 
     Raises `InvalidScenarioError` where a built-in requirement can be seen to fail in every scene.
     """

@@ -66,7 +66,7 @@ class Queues:
         self._tail[rows] = _PLENTY
 
     def add(self, rows: Indices, candidates: Indices) -> None:
-        """Candidates ``(m, width)`` for parts ``(m,)``, ascending."""
+        """Append candidates ``(m, width)`` to the queues of the parts ``(m,)``, which are ascending."""
         if not len(rows):
             return
         places = self._tail[rows] + np.arange(len(rows)) - np.searchsorted(rows, rows)

@@ -12,7 +12,7 @@ __all__ = ["extents", "outgrows", "size_in_words"]
 
 
 def size_in_words(size: Node) -> str:
-    """Width, length and height as text, such as ``11.8 x 9.5 x 8.0 m`` or ``0.5-1.0 x 2.0 x 2.0 m``; empty without bounds.
+    """Write width, length and height as text, such as ``11.8 x 9.5 x 8.0 m`` or ``0.5-1.0 x 2.0 x 2.0 m``; empty without bounds.
 
     Args:
         size: the node of a body's width, length and height.
@@ -26,7 +26,7 @@ def size_in_words(size: Node) -> str:
 
 
 def extents(container: Region) -> Floats | None:
-    """Width, length and height ``(3,)`` of a region's bounding box, the largest where they are random; ``None`` if unknown."""
+    """Return the width, length and height ``(3,)`` of a region's bounding box, the largest where they are random; ``None`` if unknown."""
     extent = container.container_extent(*(overall(as_node(value)) for value in container.parameters))
     return None if extent is None else np.asarray((extent.upper - extent.lower).max(axis=0))
 

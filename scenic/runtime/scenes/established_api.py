@@ -270,7 +270,7 @@ def argsToString(args: Sequence[object], kwargs: Mapping[str, object] = MappingP
 
 
 def batched(iterable: Iterable[object], n: int) -> Iterator[tuple[Any, ...]]:
-    """Tuples of ``n`` successive items; the last may be shorter."""
+    """Yield tuples of ``n`` successive items; the last may be shorter."""
     items = iter(iterable)
     while part := tuple(itertools.islice(items, n)):
         yield part
@@ -317,7 +317,7 @@ def dumpAsScenicCode(value: object, stream: TextIO) -> None:
 
 
 def scenicToJSON(obj: object) -> Any:
-    """Vectors as lists, for ``json.dumps(..., default=scenicToJSON)``."""
+    """Convert vectors to lists, for ``json.dumps(..., default=scenicToJSON)``."""
     if isinstance(obj, Vector):
         return list(obj)
     raise TypeError(f"Object of type {type(obj).__name__} is not JSON serializable")

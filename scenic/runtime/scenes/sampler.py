@@ -111,7 +111,10 @@ class Sampler:
         return True
 
     def met(self) -> dict[Node, NDArray[np.bool_]]:
-        """The candidates of the rehearsal that met a requirement, ``(n,)``, by its node; without requirements that it could not ask."""
+        """Return the masks ``(n,)`` of the rehearsal's candidates that met each requirement, by its node.
+
+        Requirements that the rehearsal could not evaluate are absent.
+        """
         checks = self.plan.checks
         return {
             check.node: mask
@@ -127,7 +130,7 @@ class Sampler:
         return Sampler(self._outline, numbers={**self._numbers, **numbers}, words={**self._words, **words})
 
     def on(self, other: "Sampler") -> "Sampler":
-        """Another program's sampler, in which the draws are fixed that are fixed in this one."""
+        """Return the sampler of another program with the draws fixed that are fixed in this one."""
         return other.fixed(self._numbers, self._words) if self._numbers or self._words else other
 
     def find(

@@ -33,7 +33,7 @@ _Join: TypeAlias = Callable[[Sequence[float]], float]
 
 
 def joint_margin(parts: Sequence[float]) -> float:
-    """By how much at least one of some parts holds, where all of them are on the way to a failure.
+    """Return by how much at least one of some parts holds, where all of them are on the way to a failure.
 
     The largest margin says by how much `or` holds, and the others do not matter to it. But all of them have to fall to 0 or less until
     nothing holds. So where one holds, this is a norm of the margins above 0, of an exponent between counting them (0) and adding them (1): it

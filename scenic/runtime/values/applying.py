@@ -85,7 +85,7 @@ def _at_once(scalar: Callable[..., Any], payload: object, operands: Sequence[Any
 
 
 def unary(name: str) -> Callable[[Any], Any]:
-    """`operate` for one operation of one operand without data, for what simulations do all the time."""
+    """Return `operate` for one operation of one operand without data, which simulations apply all the time."""
     operation, scalar = TABLE[name], scalar_of(name)
 
     def applied(operand: Any) -> Any:
@@ -104,7 +104,7 @@ def unary(name: str) -> Callable[[Any], Any]:
 
 
 def binary(name: str) -> Callable[[Any, Any], Any]:
-    """`operate` for one operation of two operands without data, for what simulations do all the time."""
+    """Return `operate` for one operation of two operands without data, which simulations apply all the time."""
     operation, scalar, vectors = TABLE[name], scalar_of(name), row_class(3)
 
     def applied(left: Any, right: Any) -> Any:

@@ -235,9 +235,10 @@ def is_open(value: Any) -> bool:
 
 
 def per_option(value: Any, function: Callable[[Any], Any]) -> Any:
-    """``function`` of a value; of each option where the value is a random choice, and the choice among the results.
+    """Apply ``function`` to a value.
 
-    Options that are choices themselves are taken apart likewise.
+    A random choice becomes the choice among the results for its options. Options that are choices themselves are treated in the
+    same way.
     """
     if isinstance(value, RandomBase) and value.node.operation is TABLE["select"]:
         index, *options = value.node.operands
@@ -246,9 +247,10 @@ def per_option(value: Any, function: Callable[[Any], Any]) -> Any:
 
 
 def as_drawn(function: Callable[[Any, Any], Any], first: Any, second: Any) -> Any:
-    """``function(first, second)`` where the second decides what is done, and may be random.
+    """Return ``function(first, second)`` where the second value decides what is done, and may be random.
 
-    Of a choice it is asked of each option; where only the draw shows what the second is, of what is drawn.
+    The function is called with each option of a choice. Where only the draw shows what the second value is, it is called with the
+    drawn value.
     """
     if not isinstance(second, RandomBase) or not second.node.kind.is_boxed:
         return function(first, second)

@@ -99,5 +99,5 @@ def member(cls: type, name: str) -> Any:
 
 
 def members(cls: type) -> list[Any]:
-    """Members that `bind` has put into descriptors in a class and its bases."""
+    """Return the members that `bind` has put into descriptors of a class and its bases."""
     return [item.member for base in cls.__mro__ for item in vars(base).values() if isinstance(item, _Member)]

@@ -72,7 +72,7 @@ class Vector(VectorRow, VectorMethods, length=3):
     __rmul__ = __mul__
 
     def rotatedBy(self, rotation: object) -> Any:
-        """As of `VectorMethods`, without a detour."""
+        """Return the rotated vector as `VectorMethods` does, but without its general dispatch."""
         turn = to_orientation(rotation)
         if type(turn) is Orientation:
             return Vector.of(_ROTATE(None, turn._row, self._row))
@@ -156,12 +156,12 @@ class Orientation(OrientationRow, OrientationMethods, length=4):
 
     @staticmethod
     def fromEuler(yaw: object, pitch: object, roll: object) -> Any:
-        """Intrinsic rotations about Z, the new X and the new Y (radians)."""
+        """Return the intrinsic rotations about Z, the new X and the new Y (radians)."""
         return from_euler(yaw, pitch, roll)
 
     @classmethod
     def fromQuaternion(cls, quaternion: Sequence[float]) -> "Orientation":
-        """From (x, y, z, w), normalised; raises ``ValueError`` for the zero quaternion."""
+        """Return the orientation of (x, y, z, w), normalised; raises ``ValueError`` for the zero quaternion."""
         x, y, z, w = (float(part) for part in quaternion)
         length = math.sqrt(x * x + y * y + z * z + w * w)
         if not (length > 0 and math.isfinite(length)):

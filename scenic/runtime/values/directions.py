@@ -25,7 +25,7 @@ class Direction:
     either_side: bool = False
 
     def margin(self, bearing: float) -> float:
-        """By how much a bearing in radians lies in the direction, in radians; negative outside."""
+        """Return how far inside the direction a bearing lies, both in radians; negative outside."""
         size = abs(bearing) if self.either_side else bearing
         return min(size - self.least, self.most - size)
 

@@ -214,7 +214,7 @@ def checked_weight(weight: object) -> float:
 
 
 def cumulative(weights: Sequence[float]) -> tuple[float, ...]:
-    """Cumulative probabilities; the last is exactly 1."""
+    """Return cumulative probabilities; the last is exactly 1."""
     total = sum(weights)
     if math.isinf(total):
         return cumulative([weight / max(weights) for weight in weights])

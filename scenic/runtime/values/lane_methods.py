@@ -84,7 +84,7 @@ def over_lanes(
     alone: bool = True,
     faults: bool = False,
 ) -> Callable[[_Method], _Method]:
-    """Decorate a method of definite arguments, so that random ones make a value of the graph.
+    """Decorate a method of definite arguments so that random arguments make a value of the graph.
 
     Args:
         kind: the kind of the results: scalar, vector or orientation.

@@ -38,7 +38,7 @@ class Lazy:
         return known[id(self)][1]
 
     def random_parts(self) -> list[Any]:
-        """Values in it that may be random, for sampling."""
+        """Return the parts of the value that may be random, for sampling."""
         return [self._compute]
 
     def sampled(self, sample: Any) -> "Lazy":
@@ -185,7 +185,10 @@ def defer(function: Callable[..., Any], *args: Any, **keywords: Any) -> Lazy:
 
 
 def definite(value: object, what: str) -> Any:
-    """``value``, unless it is lazy: then `InvalidScenarioError`, since ``what`` has no object to read."""
+    """Return ``value`` unless it is lazy.
+
+    Raises `InvalidScenarioError` for a lazy value: ``what`` has no object to read.
+    """
     if is_lazy(value):
         raise InvalidScenarioError(
             f"{what} depends on the object being specified, and is undefined outside of its definition",

@@ -98,15 +98,15 @@ class VectorMethods:
         return operate("component", self, payload=2)
 
     def norm(self) -> Any:
-        """Euclidean length."""
+        """Return the Euclidean length."""
         return operate("norm", self)
 
     def dot(self, other: object) -> Any:
-        """Scalar product."""
+        """Return the scalar product."""
         return operate("dot", self, to_vector(other))
 
     def cross(self, other: object) -> Any:
-        """Vector product."""
+        """Return the vector product."""
         return operate("cross", self, to_vector(other))
 
     def normalized(self) -> Any:
@@ -114,7 +114,7 @@ class VectorMethods:
         return operate("normalized", self)
 
     def rotatedBy(self, rotation: object) -> Any:
-        """Rotated by an orientation, or by an angle about the vertical axis (radians, anticlockwise)."""
+        """Return the vector rotated by an orientation, or by an angle about the vertical axis (radians, anticlockwise)."""
         return operate("rotate", to_orientation(rotation), self)
 
     def distanceTo(self, other: object) -> Any:
@@ -129,17 +129,17 @@ class VectorMethods:
         return operate("distance", self, to_vector(other)) if measure is None else measure(self)
 
     def angleTo(self, other: object) -> Any:
-        """Azimuth of the direction to ``other`` (radians, from North, anticlockwise)."""
+        """Return the azimuth of the direction to ``other`` (radians, from North, anticlockwise)."""
         return operate("azimuth", operate("subtract", to_vector(other), self))
 
     azimuthTo = angleTo
 
     def altitudeTo(self, other: object) -> Any:
-        """Altitude of the direction to ``other`` (radians above the horizon)."""
+        """Return the altitude of the direction to ``other`` (radians above the horizon)."""
         return operate("altitude", operate("subtract", to_vector(other), self))
 
     def angleWith(self, other: object) -> Any:
-        """Signed angle in the plane from this vector to ``other`` (radians, within [-pi, pi])."""
+        """Return the signed angle in the plane from this vector to ``other`` (radians, within [-pi, pi])."""
         return operate(
             "normalize angle",
             operate("subtract", operate("azimuth", to_vector(other)), operate("azimuth", self)),
@@ -158,7 +158,7 @@ class VectorMethods:
         return self.offsetRotated(heading, vector(0, radius, 0))
 
     def sphericalCoordinates(self) -> Any:
-        """Length, azimuth (not normalised) and altitude, as a vector."""
+        """Return the length, the azimuth (not normalised) and the altitude, as a vector."""
         azimuth = operate("azimuth", self)
         return vector(self.norm(), azimuth, operate("altitude", self))
 
@@ -275,11 +275,11 @@ class OrientationMethods:
         return operate("inverse", self)
 
     def localAnglesFor(self, other: object) -> Any:
-        """Euler angles of ``other`` in this frame."""
+        """Return the Euler angles of ``other`` in this frame."""
         return operate("compose", self.inverse, to_orientation(other)).eulerAngles
 
     def globalToLocalAngles(self, yaw: object, pitch: object, roll: object) -> Any:
-        """Euler angles in this frame of the orientation that has these ones globally."""
+        """Return the Euler angles, in this frame, of the orientation with the given global ones."""
         return self.localAnglesFor((yaw, pitch, roll))
 
     def toOrientation(self) -> Any:
@@ -287,7 +287,7 @@ class OrientationMethods:
         return self
 
     def toHeading(self) -> Any:
-        """Global yaw."""
+        """Return the global yaw."""
         return self.yaw
 
     def __mul__(self, other: object) -> Any:

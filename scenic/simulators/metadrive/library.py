@@ -32,7 +32,7 @@ _PLACES: Final = {
 
 
 def library() -> Library:
-    """MetaDrive's classes; raises `UnsupportedError` without them."""
+    """Return MetaDrive's classes; raises `UnsupportedError` without them."""
     try:
         return Library(**{name: getattr(import_module(module), name) for name, module in _PLACES.items()})
     except ImportError as error:

@@ -105,7 +105,7 @@ def _formed(link: Link) -> tuple[Shape, Floats]:
 
 
 def joint_values(description: Description, given: Any) -> dict[str, Any]:
-    """Values of all joints of a description: those given, else their home values.
+    """Return the values of all joints of a description: those in ``given``, else their home values.
 
     Raises:
         DescriptionError: there is no joint of a name, or a value is outside its limits.

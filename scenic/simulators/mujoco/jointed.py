@@ -84,15 +84,15 @@ class Jointed:
         self.drive(0.0)
 
     def values(self) -> dict[str, float]:
-        """Present values of the joints, radians or metres."""
+        """Return the present values of the joints, radians or metres."""
         return {name: float(self._joint(name).qpos[0]) for name in self.description.joints}
 
     def velocities(self) -> dict[str, float]:
-        """Present speeds of the joints, radians or metres per second."""
+        """Return the present speeds of the joints, radians or metres per second."""
         return {name: float(self._joint(name).qvel[0]) for name in self.description.joints}
 
     def torques(self) -> dict[str, float]:
-        """Torques (newton metres) or forces (newtons) that drives exert on the joints."""
+        """Return the torques (newton metres) or forces (newtons) that drives exert on the joints."""
         data = self._simulation.data
         dofs = {
             name: int(self._simulation.model.joint(self._prefix + name).dofadr[0])
@@ -188,9 +188,9 @@ class Jointed:
     def solve(
         self, frame: str, position: Floats, down: Floats | None = None
     ) -> tuple[dict[str, float], float]:
-        """Values of the joints at which a frame is at a place, and the distance that is left, metres.
+        """Return values of the joints that move a frame to a place, and the distance that is left, metres.
 
-        Damped least squares over the joints of the frame's chain, from their present values.
+        The method is damped least squares over the joints of the frame's chain, from their present values.
 
         Args:
             frame: name of a body or site.

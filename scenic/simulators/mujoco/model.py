@@ -134,7 +134,7 @@ class Builder:
         self._parted: dict[tuple[int, tuple[float, ...]], tuple[Any, tuple[str, ...]]] = {}
 
     def add_ground(self, height: float) -> None:
-        """An endless plane at a height (metres)."""
+        """Add an endless plane at a height (metres)."""
         self.spec.worldbody.add_geom(
             name="ground",
             type=self._mj.mjtGeom.mjGEOM_PLANE,

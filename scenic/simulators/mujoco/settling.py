@@ -57,7 +57,7 @@ class Tally:
                 self._numbers[place] += number
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """A process that is not forked counts on its own."""
+        """Make the copy in another process an empty tally: a process that is not forked counts on its own."""
         return Tally, ()
 
     def __str__(self) -> str:

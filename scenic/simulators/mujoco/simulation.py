@@ -85,7 +85,7 @@ class MujocoSimulation(Simulation):
             library().mj_kinematics(self.model, self.data)
 
     def createObjectInSimulator(self, obj: Any) -> None:
-        """A body for the object; in a simulation that runs the others stay as they are."""
+        """Add a body for the object; in a simulation that runs the other bodies stay as they are."""
         part = self._builder.add(obj)
         self._parts[id(obj)] = part
         if part.model == "articulated":

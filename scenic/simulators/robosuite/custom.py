@@ -49,7 +49,7 @@ def _shape(mjcf: str) -> Shape:
 
 
 def wrapped(mjcf: str) -> bytes:
-    """MJCF as robosuite reads objects: one body ``object`` in another one, with sites that bound it.
+    """Return MJCF as robosuite reads objects: one body ``object`` in another one, with sites that bound it.
 
     Raises:
         ScenicValueError: there is no body.

@@ -99,7 +99,7 @@ class CellMap:
 
     @classmethod
     def around(cls, points: Floats) -> "CellMap":
-        """Cells where most of the points ``(n, 3)`` are."""
+        """Return the map whose cells cover the region where most of the points ``(n, 3)`` are."""
         points = points[:: len(points) // _SAMPLE + 1]
         points = points[np.isfinite(points).all(axis=1)]
         if not len(points):

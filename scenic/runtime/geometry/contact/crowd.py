@@ -66,11 +66,11 @@ class Rows:
         return self.at(bodies[:, None], np.arange(lanes.start, lanes.stop))
 
     def mapped(self, function: Callable[[npt.NDArray[Any]], npt.NDArray[Any]]) -> "Rows":
-        """``function`` of all rows."""
+        """Return the rows with ``function`` applied to the values of all of them."""
         return Rows(function(self.values), self.base, self.stride)
 
     def followed_by(self, others: "Rows") -> "Rows":
-        """These bodies, then the others."""
+        """Return the rows of these bodies, then those of the others."""
         return Rows(
             np.concatenate([self.values, others.values]),
             np.concatenate([self.base, others.base + len(self.values)]),
@@ -110,7 +110,7 @@ class Crowd:
 
     @classmethod
     def of(cls, bodies: Sequence[Body]) -> "Crowd":
-        """At least one body."""
+        """Return the crowd of one or more bodies."""
         meshes = tuple(dict.fromkeys(mesh for body in bodies for mesh in body.meshes))
         number = {mesh: index for index, mesh in enumerate(meshes)}
         pose_parts = [
@@ -144,7 +144,7 @@ class Crowd:
         mesh: Indices,
         allow: Booleans,
     ) -> "Crowd":
-        """Bodies whose columns are stacked already; each as `Rows.stacked` takes it.
+        """Return the crowd of bodies whose columns are stacked already; each column is as `Rows.stacked` takes it.
 
         Args:
             bodies: their number.
@@ -169,7 +169,7 @@ class Crowd:
         )
 
     def followed_by(self, others: "Crowd") -> "Crowd":
-        """These bodies, then the others."""
+        """Return the crowd of these bodies, then the others."""
         meshes = tuple(dict.fromkeys(self.meshes + others.meshes))
         number = {mesh: index for index, mesh in enumerate(meshes)}
         renumber = np.array([number[mesh] for mesh in others.meshes])

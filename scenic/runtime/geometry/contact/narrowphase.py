@@ -135,9 +135,9 @@ class Solids:
     def prove(
         self, first: Indices, first_poses: Poses, second: Indices, second_poses: Poses
     ) -> tuple[Booleans, Booleans]:
-        """The masks of entries that are proved to share a point ``(n,)``, and of those that remain open ``(n,)``; at least one entry.
+        """Return the masks of entries that are proved to share a point ``(n,)``, and of those that remain open ``(n,)``; at least one entry is given.
 
-        Cells are made once exact tests have taken as long as that takes: until then, they prove nothing.
+        Cells prove nothing until exact tests have taken as long as cells take to make: only then are they made.
         """
         count = len(first)
         pairs = _Pairs.of(first, first_poses, second, second_poses)

@@ -50,7 +50,7 @@ class Placed(NamedTuple):
         )
 
     def extents(self) -> Triple:
-        """Half extents of the box around it along the global axes."""
+        """Return half the extents, along the global axes, of the box around the body."""
         (ax, ay, az), (bx, by, bz), (cx, cy, cz) = self.axes
         a, b, c = self.half
         return (

@@ -98,7 +98,7 @@ def in_convex_polygon(body: Body, corners: Floats, lanes: int) -> Booleans:
 def surely_in_disc(
     body: Body, centre: Floats, radius: Floats, sides: int, lanes: int
 ) -> tuple[Booleans, Booleans]:
-    """In which lanes a polygon that stands for a disc surely holds the body, and in which that is left open.
+    """Return the masks of the lanes in which a polygon certainly contains the body, and of those in which that is open; the polygon stands for a disc.
 
     The polygon lies between two circles: a body is in it if it is in the inner one, and not if a corner is outside the outer one.
     Both are moved by more than the tolerance and rounding.

@@ -103,7 +103,7 @@ _CORNERS: Final = 1 << 18
 
 
 def bounds(body: Body) -> tuple[Floats, Floats]:
-    """Corners ``(n | 1, 3)`` of the boxes along the axes of the world around solids, exact up to rounding."""
+    """Return the corners ``(n | 1, 3)`` of the boxes along the axes of the world around solids, exact up to rounding."""
     lanes = len(body)
     lower, upper = np.empty((lanes, 3)), np.empty((lanes, 3))
     for mesh, lanes_of_mesh in body.by_mesh(lanes):
@@ -117,7 +117,7 @@ def bounds(body: Body) -> tuple[Floats, Floats]:
 
 
 def side_bounds(body: Body, side: Side, threshold: float) -> tuple[Floats, Floats]:
-    """Corners ``(1, 3)`` of the box around the faces of a side of one solid; of the whole solid where there are none."""
+    """Return the corners ``(1, 3)`` of the box around the faces of a side of one solid; around the whole solid where the side has no faces."""
     ((mesh, _),) = body.by_mesh(1)
     count = len(mesh.faces)
     mine = side_contains(mesh, body.poses, side, threshold, np.zeros(count, dtype=np.intp), np.arange(count))
@@ -129,7 +129,7 @@ def side_bounds(body: Body, side: Side, threshold: float) -> tuple[Floats, Float
 
 
 def volumes(body: Body) -> Floats:
-    """Volumes ``(n | 1,)`` of solids."""
+    """Return the volumes ``(n | 1,)`` of solids."""
     result = np.empty(len(body))
     size = body.poses.size
     scale = np.broadcast_to(size[:, 0] * size[:, 1] * size[:, 2], len(body))
@@ -139,7 +139,7 @@ def volumes(body: Body) -> Floats:
 
 
 def areas(body: Body, side: Side, threshold: float) -> Floats:
-    """Areas ``(n | 1,)`` of the faces of a side."""
+    """Return the areas ``(n | 1,)`` of the faces of a side."""
     result = np.empty(len(body))
     for mesh, lanes_of_mesh in body.by_mesh(len(body)):
         for lane in lanes_of_mesh.tolist():
@@ -180,7 +180,7 @@ def _silhouette(mesh: Mesh) -> tuple[Floats, bool]:
 
 
 def inradii(body: Body) -> Floats:
-    """Radii ``(n | 1,)`` of balls about the positions that the solids hold; 0 where the position is outside."""
+    """Return the radii ``(n | 1,)`` of balls about the positions that the solids contain; 0 where the position is outside."""
     result = np.zeros(len(body))
     for mesh, lanes_of_mesh in body.by_mesh(len(body)):
         poses = body.poses.take(lanes_of_mesh)

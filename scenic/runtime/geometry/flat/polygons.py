@@ -196,7 +196,7 @@ class Polygons:
         return bool(shapely.intersects_xy(self.polygon, x, y))
 
     def holds_disc(self, x: float, y: float, radius: float) -> bool:
-        """As `holds_discs`, of one disc."""
+        """Return whether the polygons contain one disc; `holds_discs` answers for many."""
         import shapely
 
         return self.holds_point(x, y) and not bool(

@@ -29,7 +29,7 @@ _FLAT: Final = 1e-7
 
 
 def convex_parts(mesh: Any) -> tuple[npt.NDArray[np.float64], ...]:
-    """Vertices ``(n, 3)`` of convex parts that make up a solid; none if its hull is as good.
+    """Return the vertices ``(n, 3)`` of convex parts that make up a solid; nothing if its hull is as good.
 
     Solids of few plane faces, such as furniture, are divided exactly, others approximately, which takes seconds. Parts of a mesh serve all its
     sizes, and are kept on disk.

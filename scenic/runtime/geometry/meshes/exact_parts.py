@@ -32,7 +32,7 @@ _MOST_FACES: Final = 3000
 
 
 def exact_parts(vertices: Floats, faces: npt.NDArray[Any], most: int) -> list[Floats] | None:
-    """Corners ``(n, 3)`` of convex parts that make up a closed solid in its unit box.
+    """Return the corners ``(n, 3)`` of convex parts that make up a closed solid in its unit box.
 
     Args:
         vertices: of the solid ``(v, 3)``.

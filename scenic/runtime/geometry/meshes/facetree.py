@@ -254,7 +254,7 @@ class Meeting:
         self._there, self._here = _Maps(forth), _Maps(back)
 
     def __call__(self, entry: Indices, one: Indices, two: Indices) -> tuple[Indices, Indices, Indices]:
-        """Filter entries: keep those whose boxes, the nodes ``one`` and ``two`` of the trees, overlap either way."""
+        """Return the entries whose boxes overlap either way; the boxes are the nodes ``one`` and ``two`` of the trees."""
         near = self._near(self._there, entry, one, two)
         entry, one, two = entry[near], one[near], two[near]
         near = self._near(self._here, entry, two, one)

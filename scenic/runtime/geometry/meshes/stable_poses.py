@@ -193,7 +193,9 @@ def centre_of_mass(mesh: Mesh) -> Floats:
 
 
 def ellipsoid_footing(mesh: Mesh) -> Footing:
-    """The vertices of a unit solid inscribed in the ball of diameter 1, which stands for that: stretched, it rests on its shortest axis.
+    """Return the footing of a ball of diameter 1: the vertices of a unit solid inscribed in it stand for the ball.
+
+    A stretched ball rests on its shortest axis.
 
     Where two or three axes are equal, any direction among them is as good. The vertices are those points of the ellipsoid that the
     solid has, too; those on the shortest axes have the same probability.

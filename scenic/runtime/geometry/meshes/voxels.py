@@ -80,7 +80,7 @@ def _counts(occupied: Booleans) -> npt.NDArray[np.int32]:
 
 
 def seconds_to_make(mesh: Mesh) -> float:
-    """About how long `voxels` will take: next to nothing where an earlier run left them."""
+    """Estimate how many seconds `voxels` will take: next to nothing where an earlier run stored its result."""
     if mesh.is_box or is_kept(_KIND, mesh.digest):
         return 0.0
     return 0.04 + 4e-6 * len(mesh.faces)

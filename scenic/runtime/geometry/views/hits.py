@@ -188,5 +188,5 @@ def face_crossings(
 
 
 def ray_scene(mesh: Mesh) -> RayScene:
-    """Embree's index of a unit mesh. Get it as ``mesh.derived(ray_scene)``."""
+    """Return Embree's index of a unit mesh; callers get it as ``mesh.derived(ray_scene)``."""
     return RayScene(mesh.triangles)

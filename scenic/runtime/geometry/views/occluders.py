@@ -71,7 +71,7 @@ class Obstacles:
                 self._placed.append(None)
 
     def placed(self, number: int) -> Placed:
-        """Occluder ``number`` of ``near`` as the observers see it."""
+        """Return occluder ``number`` of ``near`` as the observers see it."""
         known = self._placed[number]
         if known is None:
             known = self._placed[number] = place(self.near[number].body, self._views, self._all)

@@ -94,9 +94,9 @@ def _meets_box(origins: Floats, directions: Floats, low: Floats, high: Floats, l
 
 
 def inner_boxes(mesh: Mesh) -> Floats:
-    """Boxes inside a closed unit mesh, ``(k, 2, 3)``, large ones first. Get them as ``mesh.derived(inner_boxes)``.
+    """Return boxes inside a closed unit mesh, ``(k, 2, 3)``, large ones first; callers get them as ``mesh.derived(inner_boxes)``.
 
-    Each grows from the deepest cell that no box holds yet, a layer at a time, while it stays in solid cells.
+    Each box grows from the deepest cell outside the earlier boxes, a layer at a time, while it stays in solid cells.
     """
     from scipy.ndimage import distance_transform_cdt
 

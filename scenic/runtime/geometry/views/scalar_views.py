@@ -34,7 +34,7 @@ class View(NamedTuple):
         return self._holds(point, 0.0, 0.0)
 
     def meets_ball(self, point: Triple, radius: float) -> bool | None:
-        """False if a ball about a point is out of range or angles; never true."""
+        """Return ``False`` if a ball about a point is out of range or angles, else ``None``: the answer is never true."""
         return False if self._holds(point, radius, 1.0) is False else None
 
     def _holds(self, point: Triple, radius: float, around: float) -> bool | None:

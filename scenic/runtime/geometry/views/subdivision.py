@@ -88,7 +88,7 @@ class _Cells:
 def prove(
     views: Views, target: Body, occluders: Sequence[Occluder], lanes: int, *, most_cells: int = 4096
 ) -> npt.NDArray[np.int8]:
-    """Proofs about each observer's sight of the target: a `Proof` for each lane, ``(lanes,)``.
+    """Return proofs about each observer's sight of the target: a `Proof` for each lane, ``(lanes,)``.
 
     Unlike `sees_bodies` this does not depend on the observers' ray numbers.
 

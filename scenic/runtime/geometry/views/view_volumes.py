@@ -57,7 +57,7 @@ def view_volume(views: Views) -> Floats:
 
 
 def near_volume(views: Views, radius: Floats) -> Floats:
-    """Cubic metres of what `draw_near` draws from, ``(n,)``."""
+    """Return the volume ``(n,)``, in cubic metres, that `draw_near` draws from."""
     inner, outer, window = _near(views, radius)
     result: Floats = 4 / 3 * np.pi * inner**3 + (outer**3 - inner**3) / 3 * window[:, 0] * 2 * np.sin(
         window[:, 1] / 2
