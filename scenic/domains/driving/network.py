@@ -296,7 +296,9 @@ class RoadNetwork(Frozen):
         """
         key = backward, tightest
         if key not in self._path_pieces:
-            self._path_pieces[key] = PathPieces(backward=backward, tightest=tightest)
+            self._path_pieces[key] = PathPieces(
+                backward=backward, tightest=tightest, origin=self.origin, lanes=self.elements
+            )
         return self._path_pieces[key]
 
     @cached_property

@@ -5,26 +5,21 @@ them. It begins and ends on the curve of the lane alone, so that pieces fit each
 """
 
 import math
+import time
 from bisect import bisect_left, bisect_right
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from scenic.dataclass import dataclass
 from scenic.domains.driving.elements import Lane
 from scenic.domains.driving.narrow_lanes import line_to_drive
-from scenic.domains.driving.path_smoothing import (
-    SPACING,
-    TIGHTEST,
-    curvatures_of,
-    headings_of,
-    resampled,
-    smoothed,
-)
+from scenic.domains.driving.path_pieces import PathPiece, piece_along
+from scenic.domains.driving.path_smoothing import SPACING, TIGHTEST, resampled, smoothed
+from scenic.domains.driving.piece_store import PieceKey, keep_pieces, kept_pieces
 
-__all__ = ["Path", "PathPiece", "PathPieces", "is_long", "piece_along"]
+__all__ = ["Path", "PathPieces", "is_long"]
 
 Floats = NDArray[np.float64]
 
@@ -32,26 +27,12 @@ _LONG: Final = 24.0
 """Metres from which a lane is long enough for a path to be cut in its middle."""
 _ABOUT: Final = 12.0
 """Metres along a path within which a place is looked for that is known roughly."""
+_WORTH: Final = 0.1
+"""Seconds of smoothing from which on its results are kept."""
+_SHARE: Final = 10
+"""Times that keeping pieces takes which are spent on others before all are kept again."""
 _SHARED: Final = 4
 """Points that neighbouring pieces share: they fix position, heading and curvature."""
-
-
-@dataclass(frozen=True, slots=True)
-class PathPiece:
-    """A part of a path: points with the direction and curvature of the curve.
-
-    Attributes:
-        points: ``(n, 2)``, in metres.
-        headings: ``(n,)``, radians, anticlockwise from north, without jumps.
-        curvatures: ``(n,)``, in 1/m, positive to the left.
-        lanes: the lanes of the piece, with the index of the first point of each.
-
-    """
-
-    points: Floats
-    headings: Floats
-    curvatures: Floats
-    lanes: tuple[tuple[int, Any], ...]
 
 
 def is_long(lane: Lane) -> bool:
@@ -63,41 +44,30 @@ def _length(line: Floats) -> float:
     return float(np.hypot(*np.diff(line, axis=0).T).sum())
 
 
-def piece_along(
-    points: Floats, lanes: Sequence[tuple[int, Any]] = (), *, cut: tuple[int, int] = (0, 0)
-) -> PathPiece:
-    """The piece along points of a smooth curve.
-
-    Args:
-        points: ``(n, 2)``, about half a metre apart.
-        lanes: lanes, with the index of the first point of each.
-        cut: numbers of points to leave out at both ends, after curvatures have been computed.
-
-    """
-    steps = headings_of(points)
-    headings = np.concatenate([steps[:1], (steps[:-1] + steps[1:]) / 2, steps[-1:]])
-    remaining = slice(cut[0], len(points) - cut[1])
-    return PathPiece(
-        points[remaining],
-        headings[remaining],
-        curvatures_of(points)[remaining],
-        tuple((max(0, index - cut[0]), lane) for index, lane in lanes),
-    )
-
-
 class PathPieces:
-    """The pieces of paths on a network, made when a car first needs them.
+    """The pieces of paths on a network, made when a car first needs them, and kept in the store on disk.
 
     Args:
         backward: pieces against the direction of lanes.
         tightest: curvature (1/m) that they may have.
+        origin: the digest of the network; ``None`` if it is not known, and nothing is kept.
+        lanes: the lanes of the network by ``uid``.
 
     """
 
-    def __init__(self, *, backward: bool = False, tightest: float = TIGHTEST) -> None:
+    def __init__(
+        self,
+        *,
+        backward: bool = False,
+        tightest: float = TIGHTEST,
+        origin: bytes | None = None,
+        lanes: Mapping[str, Any] | None = None,
+    ) -> None:
         self._backward, self._tightest = backward, tightest
         self._curves: dict[str, tuple[Floats, Floats]] = {}
-        self._pieces: dict[Any, PathPiece] = {}
+        self._content = None if origin is None else origin + repr((backward, tightest)).encode()
+        self._pieces = {} if self._content is None else kept_pieces(self._content, lanes or {})
+        self._spent, self._worth = 0.0, _WORTH
 
     def _line(self, lane: Lane) -> Floats:
         line = line_to_drive(lane)
@@ -131,11 +101,21 @@ class PathPieces:
         key = (opens, closes, *(lane.uid for lane in lanes))
         return self._known(key, lambda: self._through(lanes, opens=opens, closes=closes))
 
-    def _known(self, key: object, make: Any) -> PathPiece:
+    def _known(self, key: PieceKey, make: Callable[[], PathPiece]) -> PathPiece:
         piece = self._pieces.get(key)
         if piece is None:
+            begun = time.perf_counter()
             piece = self._pieces[key] = make()
+            self._spent += time.perf_counter() - begun
+            if self._content is not None and self._spent > self._worth:
+                self._keep(self._content)
         return piece
+
+    def _keep(self, content: bytes) -> None:
+        """Keep all pieces, and wait with the next time until that takes but a part of what it may save."""
+        begun = time.perf_counter()
+        keep_pieces(content, self._pieces)
+        self._spent, self._worth = 0.0, max(_WORTH, _SHARE * (time.perf_counter() - begun))
 
     def _half(self, lane: Lane, *, first: bool) -> PathPiece:
         _, curve = self._curve(lane)

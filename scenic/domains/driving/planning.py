@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from scenic.domains.driving.elements import Lane, Maneuver
 from scenic.domains.driving.narrow_lanes import ways_after
+from scenic.domains.driving.path_pieces import piece_along
 from scenic.domains.driving.path_smoothing import TIGHTEST, resampled, smoothed
-from scenic.domains.driving.paths import Path, PathPieces, is_long, piece_along
+from scenic.domains.driving.paths import Path, PathPieces, is_long
 from scenic.domains.driving.speed_profiles import Comfort, speeds_along, speeds_in_bends
 
 __all__ = ["MotionPlan", "Pace", "join", "path_of_lines", "speeds_of"]
