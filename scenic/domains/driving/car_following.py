@@ -65,16 +65,19 @@ class Traffic:
 
     Attributes:
         items: the objects.
+        places: their middles.
+        halves: half of the diagonal of each, seen from above, in metres.
         columns: of the middles: x, y, their squared distance from the origin, and 1, ``(n, 4)``.
 
     """
 
-    __slots__ = ("columns", "items")
+    __slots__ = ("columns", "halves", "items", "places")
 
     def __init__(self, items: Sequence[Any]) -> None:
         self.items = items
-        places = [(x, y) for x, y, *_ in (item.position for item in items)]
-        self.columns = np.array([(x, y, x * x + y * y, 1.0) for x, y in places]).reshape(-1, 4)
+        self.places = [(x, y) for x, y, *_ in (item.position for item in items)]
+        self.halves = [math.hypot(item.length, item.width) / 2 for item in items]
+        self.columns = np.array([(x, y, x * x + y * y, 1.0) for x, y in self.places]).reshape(-1, 4)
 
 
 class Course:
@@ -87,8 +90,13 @@ class Course:
         x, y = path.stretch(begin, len(path.along))[::_STRIDE].T
         self._rows = np.stack([-2 * x, -2 * y, np.ones(len(x)), x * x + y * y])
 
-    def near(self, traffic: Traffic, index: int, end: int, margin: float) -> list[tuple[Any, int]]:
-        """Return who may reach within metres of the path from one index to another one, and the index of a point near to each."""
+    def near(self, traffic: Traffic, index: int, end: int, margin: float) -> list[tuple[int, int]]:
+        """Return who may reach within metres of the path from one index to another one.
+
+        Returns:
+            Numbers of objects of the traffic, each with the index of a point of the path near to it.
+
+        """
         first = max(index - self._begin, 0) // _STRIDE
         rows = self._rows[:, first : (end - self._begin) // _STRIDE + 2]
         count = rows.shape[1]
@@ -98,14 +106,14 @@ class Course:
         squares = traffic.columns @ rows
         least = squares.min(axis=1)
         near = (least < _REACH * _REACH).nonzero()[0]
-        begin, items = self._begin + first * _STRIDE, traffic.items
+        begin, halves = self._begin + first * _STRIDE, traffic.halves
+        margin += _AWAY
         found = []
         for number, square in zip(near.tolist(), least[near].tolist(), strict=True):
-            item, point = items[number], int(squares[number].argmin())
-            reach = math.hypot(item.length, item.width) / 2 + margin + _AWAY
+            point = int(squares[number].argmin())
             # Beyond the ends, the path goes on straight.
-            if square < reach * reach or point == 0 or point == count - 1:
-                found.append((item, min(begin + _STRIDE * point, end)))
+            if square < (halves[number] + margin) ** 2 or point == 0 or point == count - 1:
+                found.append((number, min(begin + _STRIDE * point, end)))
         return found
 
 
@@ -149,17 +157,16 @@ def leader_on(path: Path, index: int, agent: Any, traffic: Traffic, course: Cour
     x, y, *_ = agent.position
     margin = agent.width / 2 + _BESIDE
     best: Leader | None = None
-    for other, start in course.near(traffic, index, end, margin):
-        if other is agent:
-            continue
-        a, b, *_ = other.position
-        if math.hypot(a - x, b - y) >= _HORIZON:
+    for number, start in course.near(traffic, index, end, margin):
+        other = traffic.items[number]
+        a, b = traffic.places[number]
+        if other is agent or math.hypot(a - x, b - y) >= _HORIZON:
             continue
         point, share, side = path.locate(a, b, start)
         place = along[point] + share * (along[point + 1] - along[point])
         if place <= own or (best is not None and place >= best.along):
             continue
-        if abs(side) > math.hypot(other.length, other.width) / 2 + margin:
+        if abs(side) > traffic.halves[number] + margin:
             continue  # however it is turned
         heading_difference = other.heading - path.headings[point]
         sine, cosine = abs(math.sin(heading_difference)), abs(math.cos(heading_difference))

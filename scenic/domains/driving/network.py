@@ -163,13 +163,18 @@ class RoadNetwork(Frozen):
     def _crossings_along(self) -> dict[str, tuple[tuple[PedestrianCrossing, float, float], ...]]:
         return {}
 
+    @cached_property
+    def _crossing_tree(self) -> Any:
+        import shapely
+
+        return shapely.STRtree([crossing.polygon for crossing in self.crossings])
+
     def _crossed_by(self, lane: Lane) -> Iterable[tuple[PedestrianCrossing, float, float]]:
         import shapely
 
         line = shapely.LineString(lane.line)
-        for crossing in self.crossings:
-            if not crossing.polygon.intersects(lane.polygon):
-                continue
+        for number in sorted(self._crossing_tree.query(lane.polygon, predicate="intersects").tolist()):
+            crossing = self.crossings[number]
             part = line.intersection(crossing.polygon)
             if not part.is_empty:
                 places = [line.project(shapely.Point(place)) for place in shapely.get_coordinates(part)]

@@ -98,7 +98,7 @@ class PathPieces:
             closes: end in the middle of the last lane.
 
         """
-        key = (opens, closes, *(lane.uid for lane in lanes))
+        key: PieceKey = (opens, closes, *(lane.uid for lane in lanes))
         return self._known(key, lambda: self._through(lanes, opens=opens, closes=closes))
 
     def _known(self, key: PieceKey, make: Callable[[], PathPiece]) -> PathPiece:

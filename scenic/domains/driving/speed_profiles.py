@@ -109,16 +109,18 @@ def speeds_along(
     """
     window = (comfort.acceleration + comfort.deceleration) / comfort.jerk
     wanted = np.minimum(limits, wanted)
-    squares = _TOLERANCE * _allowed(along, limits, window / 2, stops=stops)
+    allowed = _allowed(along, limits, window / 2, stops=stops)
+    squares = _TOLERANCE * allowed
     going = _going_on(speed, acceleration, window / 2, comfort.deceleration, comfort)
     if _needed(along, squares, *going[1:]) <= _HARDER * comfort.deceleration:
-        way = _Way(along, limits, wanted, comfort, junctions, stops)
-        return way.speeds(speed, acceleration, comfort.deceleration, window)
+        way = _Way(along, wanted, comfort, junctions, stops)
+        return way.speeds(speed, acceleration, comfort.deceleration, window, allowed)
     # Too fast for what lies ahead: an even, harder braking that begins at once, until comfort is enough.
-    deceleration_needed = _needed(along, _allowed(along, limits, _AT_ONCE / 2, stops=stops), speed, 0.0)
+    allowed = _allowed(along, limits, _AT_ONCE / 2, stops=stops)
+    deceleration_needed = _needed(along, allowed, speed, 0.0)
     deceleration = max(comfort.deceleration, min(1.1 * deceleration_needed, _EMERGENCY))
-    way = _Way(along, limits, wanted, comfort, junctions, stops)
-    speeds, accelerations = way.speeds(speed, acceleration, deceleration, _AT_ONCE)
+    way = _Way(along, wanted, comfort, junctions, stops)
+    speeds, accelerations = way.speeds(speed, acceleration, deceleration, _AT_ONCE, allowed)
     slow = speeds**2 <= _backward(squares, 2 * _HARDER * comfort.deceleration * np.diff(along))
     places = np.flatnonzero(slow[_FEW:-_FEW])
     if not len(places):
@@ -142,19 +144,20 @@ class _Way:
     """A way as `speeds_along` is given it."""
 
     along: Floats
-    limits: Floats
     wanted: Floats
     comfort: Comfort
     junctions: Sequence[tuple[int, int]]
     stops: bool
 
     def speeds(
-        self, speed: float, acceleration: float, deceleration: float, window: float
+        self, speed: float, acceleration: float, deceleration: float, window: float, allowed: Floats
     ) -> tuple[Floats, Floats]:
-        """Speeds and accelerations ``(n,)`` of a car that brakes by a deceleration, which changes over seconds."""
+        """Speeds and accelerations ``(n,)`` of a car that brakes by a deceleration, which changes over seconds.
+
+        The squared speeds ``(n,)`` that the limits allow are those of `_allowed` for half of the window.
+        """
         along, comfort, stops = self.along, self.comfort, self.stops
-        squares = _allowed(along, self.limits, window / 2, stops=stops)
-        squares = np.minimum(squares, _eroded(along, self.wanted, window / 2) ** 2)
+        squares = np.minimum(allowed, _eroded(along, self.wanted, window / 2) ** 2)
         last = squares[-1]
         if stops:
             # Whoever stops in a junction, at the end of the network, brakes there.
