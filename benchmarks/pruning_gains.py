@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import scenic
-from scenic.analysis.smt import Encoding
+from scenic.analysis.smt import SolverEncoding
 from scenic.graph.bounding import over
 from scenic.graph.node import Graph
 from scenic.narrowing import conditions
@@ -79,7 +79,7 @@ def refuted(scenario: Scenario) -> float:
         ]
         if not mine:
             continue
-        encoding = Encoding([fact.node for fact in mine])
+        encoding = SolverEncoding([fact.node for fact in mine])
         solver = z3.Solver(ctx=encoding.terms.context)
         solver.set("rlimit", RESOURCES)
         solver.add(*encoding.terms.definitions, *(term for term, _ in encoding.supports))

@@ -26,7 +26,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
-from scenic.batch.engines import DaskCluster, Engine, OverExecutor
+from scenic.batch.engines import BatchEngine, DaskCluster, OverExecutor
 from scenic.batch.scenes import Job, in_processes
 
 COST = 0.01
@@ -67,7 +67,7 @@ def main() -> None:
 
 
 @contextlib.contextmanager
-def _engine(workers: int, *, dask: bool) -> Iterator[Engine]:
+def _engine(workers: int, *, dask: bool) -> Iterator[BatchEngine]:
     if not dask:
         with ThreadPoolExecutor(workers) as executor:
             yield OverExecutor(executor, workers)
@@ -98,7 +98,7 @@ def _address(place: Path) -> str:
     return str(json.loads(place.read_text())["address"])
 
 
-def _measured(engine: Engine, workers: int, seconds: float, size: int, straggle: float) -> str:
+def _measured(engine: BatchEngine, workers: int, seconds: float, size: int, straggle: float) -> str:
     from benchmarks import scheduling  # workers of other processes do not know `__main__`
 
     count = int(workers * seconds / COST)

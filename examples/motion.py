@@ -15,7 +15,7 @@ from typing import Any, Final
 from examples import program
 from scenic.formats.camera import Outlook, corners, framing
 from scenic.formats.files import make_folder, write
-from scenic.formats.mesh_instances import Instance, Picture, picture
+from scenic.formats.mesh_instances import MeshInstance, Picture, picture
 from scenic.formats.png import encoded
 from scenic.formats.render import render
 from scenic.pipeline import load
@@ -58,7 +58,7 @@ def exposed(simulation: Any, moments: Sequence[float]) -> Picture:
     """The objects of a simulation at several moments."""
     scene_picture = picture([simulation.scene])
     numbers = {id(thing): number for number, thing in enumerate(simulation.objects)}
-    instances: list[Instance] = []
+    instances: list[MeshInstance] = []
     for instance in scene_picture.scenes[0]:
         number = numbers[id(instance.thing)]
         before: tuple[float, float, float] | None = None

@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.spatial.transform import Rotation
 
-from scenic.formats.trajectory_reading import Trajectory, read_trajectory
+from scenic.formats.trajectory_reading import TrajectoryArrays, read_trajectory
 
 Array = npt.NDArray[Any]
 Judgement = tuple[bool, float | None]
@@ -32,12 +32,12 @@ def eventually(values: Array) -> Judgement:
     return bool((values > 0).any()), float(values.max())
 
 
-def apart(run: Trajectory, one: str, other: str) -> Array:
+def apart(run: TrajectoryArrays, one: str, other: str) -> Array:
     """The distance of two objects, ``(s,)``, metres."""
     return np.linalg.norm(run.position(one) - run.position(other), axis=1)
 
 
-def corners(run: Trajectory, name: str) -> Array:
+def corners(run: TrajectoryArrays, name: str) -> Array:
     """The corners of an object's box at each step, ``(s, 8, 3)``."""
     signs = np.array(list(product((-0.5, 0.5), repeat=3))) * run.size(name)
     turned = [Rotation.from_quat(turn).apply(signs) for turn in run.orientation(name)]
@@ -62,7 +62,7 @@ def until(first: Array, second: Array) -> Judgement:
     return eventually(np.minimum(second, before))
 
 
-def overtaking(run: Trajectory) -> dict[str, Judgement]:
+def overtaking(run: TrajectoryArrays) -> dict[str, Judgement]:
     ego, slow = run.position("ego"), run.position("slow")
     return {
         "apart": always(apart(run, "ego", "slow") - 2.2),
@@ -72,7 +72,7 @@ def overtaking(run: Trajectory) -> dict[str, Judgement]:
     }
 
 
-def intersection(run: Trajectory) -> dict[str, Judgement]:
+def intersection(run: TrajectoryArrays) -> dict[str, Judgement]:
     turned = depth(corners(run, "ego"), (-60, -20), (0, 3.5)).min(axis=1)
     crossing = depth(run.position("waiting"), (-3.5, 3.5), (-3.5, 3.5))
     return {
@@ -83,7 +83,7 @@ def intersection(run: Trajectory) -> dict[str, Judgement]:
     }
 
 
-def pick_and_place(run: Trajectory) -> dict[str, Judgement]:
+def pick_and_place(run: TrajectoryArrays) -> dict[str, Judgement]:
     blocks = ("first", "second", "third")
     inside = [depth(corners(run, name), (0.25, 0.55), (-0.2, 0.2)).min(axis=1) for name in blocks]
     heights = np.min([run.position(name)[:, 2] for name in blocks], axis=0)
@@ -94,7 +94,7 @@ def pick_and_place(run: Trajectory) -> dict[str, Judgement]:
     }
 
 
-def robot_vacuum(run: Trajectory) -> dict[str, Judgement]:
+def robot_vacuum(run: TrajectoryArrays) -> dict[str, Judgement]:
     ego = run.position("ego")
     return {
         "inside": always(depth(ego, (-2, 2), (-1.5, 1.5))),
@@ -103,7 +103,7 @@ def robot_vacuum(run: Trajectory) -> dict[str, Judgement]:
     }
 
 
-def drones(run: Trajectory) -> dict[str, Judgement]:
+def drones(run: TrajectoryArrays) -> dict[str, Judgement]:
     names = ("one", "two", "three", "four")
     gaps = [apart(run, one, other) for one, other in combinations(names, 2)]
     goals = np.array(run.record("goals"))[[2, 3, 0, 1]]
@@ -115,7 +115,7 @@ def drones(run: Trajectory) -> dict[str, Judgement]:
     }
 
 
-JUDGES: Final[Mapping[str, Callable[[Trajectory], dict[str, Judgement]]]] = MappingProxyType(
+JUDGES: Final[Mapping[str, Callable[[TrajectoryArrays], dict[str, Judgement]]]] = MappingProxyType(
     {
         "overtaking": overtaking,
         "intersection": intersection,
@@ -126,7 +126,7 @@ JUDGES: Final[Mapping[str, Callable[[Trajectory], dict[str, Judgement]]]] = Mapp
 )
 
 
-def judgements(example: str, run: Trajectory) -> dict[str, Judgement] | None:
+def judgements(example: str, run: TrajectoryArrays) -> dict[str, Judgement] | None:
     """Return the judgements of an example on a simulation; for other names, those of the example with the same
     requirements, if any.
     """
@@ -143,7 +143,7 @@ def judgements(example: str, run: Trajectory) -> dict[str, Judgement] | None:
     return None
 
 
-def disagreements(example: str, run: Trajectory) -> list[str]:
+def disagreements(example: str, run: TrajectoryArrays) -> list[str]:
     """Describe the differences between the simulation's verdicts and margins and those computed from its trajectory."""
     verdicts = judgements(example, run)
     if verdicts is None:

@@ -26,7 +26,7 @@ from scenic.language.spelling import nearest
 from scenic.narrowing import prepared_sampler
 from scenic.runtime.description.definitions import ModularScenario
 from scenic.runtime.description.mutation import apply_noise
-from scenic.runtime.description.outcome import Module, Program
+from scenic.runtime.description.outcome import Program, RunningModule
 from scenic.runtime.geometry.store import programs_folder
 from scenic.runtime.ground.context import Context, current, warn
 from scenic.runtime.instances.objects import Object, Point
@@ -459,7 +459,7 @@ def _export(scene: Scene, path: Path) -> bool:
     return False
 
 
-def _run_chosen(module: ModuleType, state: Module, chosen: str | None) -> ModularScenario | None:
+def _run_chosen(module: ModuleType, state: RunningModule, chosen: str | None) -> ModularScenario | None:
     """Run the set-up of the scenario that the file means (section 2.6 of the specification)."""
     scenarios = {
         item.__name__: item

@@ -39,7 +39,7 @@ class SolverVerdict:
 
     contradictions: tuple[Contradiction, ...]
     tautologies: tuple[Fact, ...]
-    encoding: "Encoding"
+    encoding: "SolverEncoding"
 
 
 def judge(conditions: Sequence[Fact]) -> SolverVerdict:
@@ -48,7 +48,7 @@ def judge(conditions: Sequence[Fact]) -> SolverVerdict:
     Conditions that are impossible by themselves are reported first and alone; then, as long as the rest cannot hold
     together, a minimal contradiction, whose last condition is left out of what follows.
     """
-    encoding = Encoding([condition.node for condition in conditions])
+    encoding = SolverEncoding([condition.node for condition in conditions])
     formulas = [encoding.truth(condition.node) for condition in conditions]
     supports = encoding.supports
     count = len(conditions)
@@ -84,7 +84,7 @@ def judge(conditions: Sequence[Fact]) -> SolverVerdict:
     return SolverVerdict(tuple(contradictions), tautologies, encoding)
 
 
-class Encoding:
+class SolverEncoding:
     """The terms of nodes, with what is known of the primitive values among them."""
 
     def __init__(self, roots: Sequence[Node]) -> None:

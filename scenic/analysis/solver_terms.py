@@ -31,7 +31,7 @@ def has_solver() -> bool:
 
 
 @unique
-class Answer(Enum):
+class SolverAnswer(Enum):
     """The answer of the solver about a set of formulas."""
 
     POSSIBLE = "possible"
@@ -120,14 +120,14 @@ class Questions:
         for name, formula in zip(self._names, formulas, strict=True):
             self._solver.add(z3.Implies(name, formula, terms.context))
 
-    def ask(self, members: Sequence[int]) -> Answer:
+    def ask(self, members: Sequence[int]) -> SolverAnswer:
         """Return whether the formulas of these numbers can hold together."""
         if self._spent() >= TOTAL:
-            return Answer.UNKNOWN
+            return SolverAnswer.UNKNOWN
         result = self._solver.check(*(self._names[number] for number in members))
         if result == self._z3.sat:
-            return Answer.POSSIBLE
-        return Answer.IMPOSSIBLE if result == self._z3.unsat else Answer.UNKNOWN
+            return SolverAnswer.POSSIBLE
+        return SolverAnswer.IMPOSSIBLE if result == self._z3.unsat else SolverAnswer.UNKNOWN
 
     def _spent(self) -> int:
         """The count of all questions so far; z3 keeps one for the context, which is ours alone."""
@@ -139,13 +139,13 @@ class Questions:
 
         ``None`` where they can, or nothing was decided. Earlier members are taken away first.
         """
-        if self.ask(members) is not Answer.IMPOSSIBLE:
+        if self.ask(members) is not SolverAnswer.IMPOSSIBLE:
             return None
         numbers = {name.get_id(): number for number, name in enumerate(self._names)}
         core = sorted(numbers[name.get_id()] for name in self._solver.unsat_core())
         for member in tuple(core):
             rest = [number for number in core if number != member]
-            if self.ask(rest) is Answer.IMPOSSIBLE:
+            if self.ask(rest) is SolverAnswer.IMPOSSIBLE:
                 core = rest
         return tuple(core)
 
@@ -154,6 +154,6 @@ class Questions:
         self._solver.push()
         try:
             self._solver.add(formula)
-            return self.ask(members) is Answer.IMPOSSIBLE
+            return self.ask(members) is SolverAnswer.IMPOSSIBLE
         finally:
             self._solver.pop()

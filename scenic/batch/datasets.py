@@ -13,7 +13,7 @@ from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Final
 
-from scenic.batch.engines import Engine
+from scenic.batch.engines import BatchEngine
 from scenic.batch.folders.folder import WrittenFolder, check_files
 from scenic.batch.folders.lock import lock_beside
 from scenic.batch.image_parts import join_indices
@@ -56,7 +56,7 @@ class DatasetRun:
 
     """
 
-    engine: Engine | None = None
+    engine: BatchEngine | None = None
     deadline: float | None = None
     advance: Callable[[int, int], None] = lambda _scenes, _attempts: None
 
@@ -180,7 +180,7 @@ def scenes_kept(folder: Path) -> int:
     return done + sum(path.stat().st_size // ENTRY for path in folder.glob(f"part-*{JOURNAL}"))
 
 
-def _made(scenario: Scenario, encoder: Encoder, job: Job, engine: Engine | None) -> Iterator[Made]:
+def _made(scenario: Scenario, encoder: Encoder, job: Job, engine: BatchEngine | None) -> Iterator[Made]:
     if engine is None or job.last - job.first < 2:
         return encoded_here(scenario, encoder, job, most=encoder.most)
     return in_processes(scenario, encoder, job, engine)

@@ -17,7 +17,7 @@ from scenic.language.extras import needing
 if TYPE_CHECKING:
     from concurrent.futures import Executor, Future
 
-__all__ = ["ClusterError", "DaskCluster", "Engine", "OverExecutor", "Processes"]
+__all__ = ["BatchEngine", "ClusterError", "DaskCluster", "OverExecutor", "Processes"]
 
 _Argument = TypeVar("_Argument")
 _Result = TypeVar("_Result")
@@ -32,7 +32,7 @@ _COUNTED: Final = 2.0
 """Seconds until the workers of a cluster are counted again: they may come and go."""
 
 
-class Engine(Protocol):
+class BatchEngine(Protocol):
     """Calls a function in several places."""
 
     @property
@@ -69,7 +69,7 @@ class Processes:
         lost: Callable[[_Argument, int], _Result],
         spread: int | None = None,
     ) -> Iterator[tuple[int, _Result]]:
-        """See `Engine.run`."""
+        """See `BatchEngine.run`."""
         from scenic.batch import workers  # takes a sixteenth of a start, which one process can do without
 
         return workers.run(function, arguments, jobs=self.jobs, lost=lost, spread=spread)
@@ -96,7 +96,7 @@ class OverExecutor:
         lost: Callable[[_Argument, int], _Result],
         spread: int | None = None,
     ) -> Iterator[tuple[int, _Result]]:
-        """See `Engine.run`."""
+        """See `BatchEngine.run`."""
         from concurrent.futures.process import BrokenProcessPool  # like the next one slow to import
         from queue import SimpleQueue
 
@@ -184,7 +184,7 @@ class DaskCluster:
         lost: Callable[[_Argument, int], _Result],
         spread: int | None = None,
     ) -> Iterator[tuple[int, _Result]]:
-        """See `Engine.run`. Dask runs the task of a lost worker again; ``lost`` answers when that has failed, too."""
+        """See `BatchEngine.run`. Dask runs the task of a lost worker again; ``lost`` answers when that has failed, too."""
         remote = Portable(function)
         upcoming = Upcoming(arguments, spread)
         busy: dict[Any, tuple[int, _Argument]] = {}

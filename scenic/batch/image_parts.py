@@ -17,7 +17,7 @@ from scenic.batch.source_files import texts_of
 from scenic.formats.coco import INDEX, Photographer, index_of
 from scenic.formats.files import Waiting, write, writing
 from scenic.formats.mesh_files import digest_of
-from scenic.formats.mesh_instances import Surfaces
+from scenic.formats.mesh_instances import MeshSurfaces
 from scenic.formats.scene_cameras import AbsentCameraError
 from scenic.formats.shards import END, encoded_row, member, members, rows_of
 from scenic.runtime.scenes.scenario import Scenario
@@ -52,7 +52,7 @@ class ImageRows:
 
     def __init__(self, scenario: Scenario, form: str, settings: Mapping[str, Any]) -> None:
         size = settings["size"]
-        surfaces, classes = Surfaces(), classes_of(scenario)
+        surfaces, classes = MeshSurfaces(), classes_of(scenario)
         self._photographers = [
             Photographer(
                 camera,

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from scenic.batch.engines import Engine, OverExecutor, Processes
+from scenic.batch.engines import BatchEngine, OverExecutor, Processes
 from scenic.dataclass import dataclass
 from scenic.graph.points import PointSet, Sobol
 from scenic.language.errors import Located, RejectionException
@@ -202,7 +202,7 @@ def _accepted_attempts(_: Scenario, scenes: Sequence[Scene]) -> bytes:
     return np.array([scene.component_attempts for scene in scenes], dtype=np.int64).tobytes()
 
 
-def in_processes(scenario: Scenario, encode: Encode, job: Job, engine: Engine) -> Iterator[Made]:
+def in_processes(scenario: Scenario, encode: Encode, job: Job, engine: BatchEngine) -> Iterator[Made]:
     """The results of a job, in order, in pieces that the workers of an engine make.
 
     Raises `WorkerDiedError` where processes keep dying, and whatever sampling raises.
@@ -213,7 +213,7 @@ def in_processes(scenario: Scenario, encode: Encode, job: Job, engine: Engine) -
 class _Pieces:
     """A job in pieces that take about as long each, smaller ones at the end, so that all processes end together."""
 
-    def __init__(self, job: Job, engine: Engine) -> None:
+    def __init__(self, job: Job, engine: BatchEngine) -> None:
         self._job = job
         self._engine = engine
         self._size = self._usual = _FIRST
@@ -234,7 +234,7 @@ class _Pieces:
         self._usual = max(self._usual, self._size)
 
 
-def _ordered(scenario: Scenario, encode: Encode, pieces: _Pieces, engine: Engine) -> Iterator[Made]:
+def _ordered(scenario: Scenario, encode: Encode, pieces: _Pieces, engine: BatchEngine) -> Iterator[Made]:
     waiting: dict[int, Made] = {}
     upcoming = 0
     for index, block in _made(scenario, encode, pieces, engine):
@@ -255,7 +255,7 @@ def _ordered(scenario: Scenario, encode: Encode, pieces: _Pieces, engine: Engine
 
 
 def _made(
-    scenario: Scenario, encode: Encode, pieces: Iterable[Job], engine: Engine
+    scenario: Scenario, encode: Encode, pieces: Iterable[Job], engine: BatchEngine
 ) -> Iterator[tuple[int, Made]]:
     """The results of pieces as they come, with the numbers of the pieces."""
     return engine.run(
@@ -266,7 +266,7 @@ def _made(
     )
 
 
-def _again(scenario: Scenario, encode: Encode, made: Made, engine: Engine) -> Made:
+def _again(scenario: Scenario, encode: Encode, made: Made, engine: BatchEngine) -> Made:
     """Return a piece whose worker died, made by another one."""
     code = made.died
     for _ in range(_TRIES):

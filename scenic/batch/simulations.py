@@ -9,7 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from scenic.batch.engines import Engine, OverExecutor, Processes
+from scenic.batch.engines import BatchEngine, OverExecutor, Processes
 from scenic.batch.folders.file_digests import files_of_origin
 from scenic.batch.keeping import Form, SimulationRecord, Watcher, about_file, is_whole
 from scenic.batch.simulation_folders import SimulationFolder
@@ -196,7 +196,7 @@ class Simulations:
         }
 
     def rows(
-        self, numbers: Sequence[int], engine: Engine | None = None
+        self, numbers: Sequence[int], engine: BatchEngine | None = None
     ) -> Generator[SimulationRow, None, None]:
         """The simulations of these numbers, in any order, as the engine (else this process) makes them."""
         if engine is None or len(numbers) < 2:
@@ -418,7 +418,7 @@ def simulated(
     )
     batch = Simulations(scenario, simulator, running, folder=place, shown=shown)
     numbers = range(first, first + n)
-    engine: Engine | None = None
+    engine: BatchEngine | None = None
     if executor is not None:
         engine = OverExecutor(executor, max(2, processes))
     elif processes > 1:

@@ -14,7 +14,7 @@ from scenic.batch.folders.lock import locked
 from scenic.cli.output import has_colours
 
 if TYPE_CHECKING:
-    from scenic.batch.engines import Engine
+    from scenic.batch.engines import BatchEngine
     from scenic.runtime.scenes.scenario import Scenario
 
 __all__ = [
@@ -39,7 +39,7 @@ NOT_ALL: Final = 3
 
 
 @contextmanager
-def engine_of(jobs: int, dask: str | None) -> "Iterator[Engine | None]":
+def engine_of(jobs: int, dask: str | None) -> "Iterator[BatchEngine | None]":
     """The place where scenes are sampled; ``None`` is this process."""
     from scenic.batch.engines import DaskCluster, Processes
 
@@ -60,7 +60,7 @@ def batch_run(
     shown: bool,
     places: Iterable[Path] = (),
     hint: str | None = None,
-) -> "Iterator[tuple[Advance, Engine | None]]":
+) -> "Iterator[tuple[Advance, BatchEngine | None]]":
     """Provide what a batch needs around it: locks of its files, an end by signals, a progress bar, the engine.
 
     Args:

@@ -16,7 +16,7 @@ from scenic.cli.output import FINDINGS, exit_code, show_diagnostics
 from scenic.configuration.project import Configurations
 from scenic.language.diagnostics import Diagnostic
 from scenic.migration.embedded import SUFFIXES
-from scenic.migration.migrated_files import File, convert_files, convert_text, lines_of, write_file
+from scenic.migration.migrated_files import MigratedFile, convert_files, convert_text, lines_of, write_file
 from scenic.migration.migration_rules import RULES
 
 __all__ = ["migrate"]
@@ -60,7 +60,7 @@ def migrate(
     names = [name for name in discovery.files if name != STANDARD_INPUT]
     if strings:
         names += [name for name in _beside(paths) if name not in names]
-    files: list[File] = []
+    files: list[MigratedFile] = []
     if STANDARD_INPUT in discovery.files:
         text = sys.stdin.buffer.read().decode("utf-8", "surrogateescape")
         file = convert_text(text, "<stdin>", flat=flat)
@@ -85,7 +85,7 @@ def migrate(
     return exit_code(problems) or (FINDINGS if changes and check else 0)
 
 
-def _write(files: Sequence[File]) -> tuple[int, list[Diagnostic]]:
+def _write(files: Sequence[MigratedFile]) -> tuple[int, list[Diagnostic]]:
     """Write the files that change; return how many were written, and why others could not be."""
     changed = [file for file in files if file.changes and file.problem is None and file.name != "<stdin>"]
     refusals = [refusal for refusal in map(write_file, changed) if refusal is not None]
@@ -117,7 +117,7 @@ def _beside(paths: Sequence[str]) -> Iterator[str]:
                     yield name if folder == os.curdir else os.path.join(folder, name)
 
 
-def _patch(file: File) -> str:
+def _patch(file: MigratedFile) -> str:
     before, after = lines_of(file)
     lines = difflib.unified_diff(before, after, file.name, file.name)
     return "".join(
@@ -125,7 +125,7 @@ def _patch(file: File) -> str:
     )
 
 
-def _decisions(files: Sequence[File]) -> Iterator[str]:
+def _decisions(files: Sequence[MigratedFile]) -> Iterator[str]:
     """The decisions that are left to a person, by rule."""
     for rule in RULES.values():
         places = [
@@ -146,7 +146,7 @@ def _decisions(files: Sequence[File]) -> Iterator[str]:
         yield "\n"
 
 
-def _summary(files: Sequence[File], written: int | None) -> Iterator[str]:
+def _summary(files: Sequence[MigratedFile], written: int | None) -> Iterator[str]:
     counts = Counter(note.rule for file in files for note in file.notes if note.rewritten)
     width = len(str(max(counts.values(), default=0)))
     for rule in RULES.values():
@@ -164,7 +164,7 @@ def _summary(files: Sequence[File], written: int | None) -> Iterator[str]:
     yield f"{what}{rest}\n"
 
 
-def _report(files: Sequence[File], problems: Sequence[Diagnostic]) -> dict[str, Any]:
+def _report(files: Sequence[MigratedFile], problems: Sequence[Diagnostic]) -> dict[str, Any]:
     """The report as plain data."""
     counts = Counter(note.rule for file in files for note in file.notes if note.rewritten)
     return {

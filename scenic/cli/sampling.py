@@ -9,7 +9,7 @@ from dataclasses import field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from scenic.batch.engines import Engine
+from scenic.batch.engines import BatchEngine
 from scenic.batch.folders.file_digests import digest_of_files, file_digests
 from scenic.batch.folders.lock import locked
 from scenic.batch.scenes import Job, in_processes, method_of, results_of
@@ -62,7 +62,7 @@ class _Batch:
     request: SampleRequest
     seed: int
     deadline: float | None
-    engine: Engine | None = None
+    engine: BatchEngine | None = None
     advance: Callable[[int, int], None] = lambda _scenes, _attempts: None
     missing: list[Exhausted] = field(default_factory=list)
     lost: int = 0

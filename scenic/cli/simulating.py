@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import ExitStack, closing
 from typing import Any, Final
 
-from scenic.batch.engines import Engine
+from scenic.batch.engines import BatchEngine
 from scenic.batch.simulation_folders import seed_of_simulations
 from scenic.batch.simulations import SimulationRow, Simulations, SimulationSettings, nothing_happens
 from scenic.batch.summaries import SettingRuns, csv_of, plot, summary
@@ -109,7 +109,7 @@ def _simulate(
     request: SimulateRequest,
     setting: SettingRuns,
     batch: Simulations,
-    engine: Engine | None,
+    engine: BatchEngine | None,
     advance: Advance,
 ) -> int:
     """Make the missing simulations of a setting, and print all in order, each as soon as those before it are there."""

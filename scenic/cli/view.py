@@ -105,11 +105,11 @@ def _deliver(file: str, scenes: Iterable[ReadScene], chosen: Sequence[sinks.Sink
 
 def _watch(program: Path, count: int, seed: int, no_browser: bool) -> int:
     """Serve the page that follows a program, until the user ends it."""
-    from scenic.playground.live_page import Watch, served
+    from scenic.playground.live_page import WatchedProgram, served
 
     if not program.is_file():
         raise click.UsageError(f"there is no program '{program}' to watch")
-    with served(Watch(program.absolute(), count=count, seed=seed)) as address:
+    with served(WatchedProgram(program.absolute(), count=count, seed=seed)) as address:
         click.echo(f"{address}\nsave {program.name} to see new scenes; Ctrl+C ends this")
         if not no_browser:
             webbrowser.open(address)

@@ -14,7 +14,7 @@ from scenic.compiler.generated import HARD_KEYWORDS
 from scenic.compiler.syntax import Choice, Item, ListOf, Many, Optional, Row, RuleReference, TokenKind, Word
 from scenic.constrained.grammar_rules import read_rules
 from scenic.constrained.layout import Laid, lay_out
-from scenic.constrained.terminals import Tokens, tokens
+from scenic.constrained.terminals import TokenDefinitions, tokens
 from scenic.constrained.worlds import read_world, restricted, restricted_tokens, worlds
 from scenic.constrained.writing import write_ebnf, write_gbnf, write_lark
 
@@ -22,7 +22,7 @@ __all__ = ["FORMATS", "grammar_text", "worlds"]
 
 _START: Final = "file"
 
-_WRITERS: Final[Mapping[str, Callable[[Laid, Tokens], str]]] = MappingProxyType(
+_WRITERS: Final[Mapping[str, Callable[[Laid, TokenDefinitions], str]]] = MappingProxyType(
     {"lark": write_lark, "gbnf": write_gbnf, "ebnf": write_ebnf}
 )
 

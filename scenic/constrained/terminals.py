@@ -14,14 +14,14 @@ from scenic.compiler.syntax import TokenKind, Word
 from scenic.constrained.items import CharacterClass, TextChoice, TextItem, TextMany, TextOptional, TextRow
 from scenic.dataclass import dataclass
 
-__all__ = ["INDENTATION", "Tokens", "letters", "tokens"]
+__all__ = ["INDENTATION", "TokenDefinitions", "letters", "tokens"]
 
 INDENTATION: Final = 4
 """Blanks for each level of indentation."""
 
 
 @dataclass(frozen=True, slots=True)
-class Tokens:
+class TokenDefinitions:
     """Kinds of tokens: the definitions of some, and of kinds of names the words that are none."""
 
     definitions: Mapping[str, TextItem]
@@ -147,11 +147,11 @@ class _Reader:
 
 
 @cache
-def tokens() -> Tokens:
+def tokens() -> TokenDefinitions:
     """Return the kinds of tokens of the language; line ends, which depend on the indentation, are left out."""
     pairs = (line.split(" ::= ", 1) for line in _DEFINITIONS)
     definitions = {name: _Reader(text).choice() for name, text in pairs}
-    return Tokens(definitions, {"NAME": frozenset(HARD_KEYWORDS)})
+    return TokenDefinitions(definitions, {"NAME": frozenset(HARD_KEYWORDS)})
 
 
 @cache

@@ -15,19 +15,19 @@ from scenic.compiler.semantics.symbols import SymbolKind, symbol_of_exported
 from scenic.compiler.syntax import Item, ListOf, Optional, Row, RuleReference, TokenKind, Word
 from scenic.constrained.grammar_rules import Rules
 from scenic.constrained.items import CharacterClass, TextChoice, TextItem, TextMany
-from scenic.constrained.terminals import Tokens, tokens
+from scenic.constrained.terminals import TokenDefinitions, tokens
 from scenic.dataclass import dataclass
 from scenic.language.properties import CLASSES
 from scenic.project.index import Project
 
-__all__ = ["World", "read_world", "restricted", "restricted_tokens", "worlds"]
+__all__ = ["WorldNames", "read_world", "restricted", "restricted_tokens", "worlds"]
 
 OWN: Final = "My"
 """The beginning of the names that programs choose."""
 
 
 @dataclass(frozen=True, slots=True)
-class World:
+class WorldNames:
     """The names that a world model has: of classes of objects, of behaviors, and of the simulator's models."""
 
     module: str
@@ -48,7 +48,7 @@ def worlds() -> Mapping[str, str]:
     return MappingProxyType(found)
 
 
-def read_world(name: str) -> World:
+def read_world(name: str) -> WorldNames:
     """The names of a world model, read without running it; raises `KeyError` if there is no such world."""
     module = worlds()[name]
     project = Project()
@@ -62,7 +62,7 @@ def read_world(name: str) -> World:
             world_class = Classes(project).of_symbol(symbol)
             if world_class is not None and world_class.is_scenic:
                 classes.add(public)
-    return World(
+    return WorldNames(
         module,
         tuple(sorted(classes)),
         tuple(sorted(behaviors)),
@@ -79,7 +79,7 @@ def _blueprints() -> tuple[str, ...]:
 _CALL: Final = RuleReference("behavior_call")
 
 
-def restricted(rules: Rules, world: World) -> Rules:
+def restricted(rules: Rules, world: WorldNames) -> Rules:
     """The rules with names of a world where classes, behaviors, blueprints and the model stand."""
     new_rules = dict(rules)
     new_rules["behavior_call"] = (
@@ -122,7 +122,7 @@ def _run(item: Item) -> Item:
     return ListOf((RuleReference("run"),), item.separator) if isinstance(item, ListOf) else item
 
 
-def restricted_tokens(world: World) -> Tokens:
+def restricted_tokens(world: WorldNames) -> TokenDefinitions:
     """Return the kinds of tokens that `restricted` rules have."""
     general = tokens()
     own_class = ((TokenKind("OWN"),),)
@@ -137,4 +137,6 @@ def restricted_tokens(world: World) -> Tokens:
         literals = (f"{quote}{name}{quote}" for name in world.blueprints for quote in "\"'")
         definitions["BLUEPRINT"] = TextChoice(tuple((Word(text),) for text in literals))
     reserved_words = {"behavior", "blueprint"} if world.blueprints else {"behavior"}
-    return Tokens(definitions, {**general.names, "PROPERTY": general.names["NAME"] | reserved_words})
+    return TokenDefinitions(
+        definitions, {**general.names, "PROPERTY": general.names["NAME"] | reserved_words}
+    )

@@ -23,7 +23,7 @@ from scenic.constrained.items import (
     within,
 )
 from scenic.constrained.layout import Laid
-from scenic.constrained.terminals import INDENTATION, Tokens, letters
+from scenic.constrained.terminals import INDENTATION, TokenDefinitions, letters
 
 __all__ = ["MOST_LEVELS", "write_ebnf", "write_gbnf", "write_lark"]
 
@@ -34,17 +34,17 @@ _DIGITS: Final = "0123456789"
 _ASCII_PARTS: Final = f"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz{_DIGITS}_"
 
 
-def write_lark(laid: Laid, tokens: Tokens) -> str:
+def write_lark(laid: Laid, tokens: TokenDefinitions) -> str:
     """Return the grammar in the dialect of Lark that llguidance reads."""
     return _Lark(laid, tokens).text()
 
 
-def write_gbnf(laid: Laid, tokens: Tokens) -> str:
+def write_gbnf(laid: Laid, tokens: TokenDefinitions) -> str:
     """Return the grammar as llama.cpp reads it."""
     return _Gbnf(laid, tokens).text()
 
 
-def write_ebnf(laid: Laid, tokens: Tokens) -> str:
+def write_ebnf(laid: Laid, tokens: TokenDefinitions) -> str:
     """Return the grammar as xgrammar reads it."""
     return _Ebnf(laid, tokens).text()
 
@@ -54,7 +54,7 @@ class _Writer(ABC):
 
     define = " ::= "
 
-    def __init__(self, laid: Laid, tokens: Tokens) -> None:
+    def __init__(self, laid: Laid, tokens: TokenDefinitions) -> None:
         self._laid = laid
         self._tokens = tokens
         self._level = 0

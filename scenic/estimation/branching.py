@@ -6,7 +6,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from scenic.batch.engines import Engine
+from scenic.batch.engines import BatchEngine
 from scenic.dataclass import dataclass
 from scenic.falsification.evaluating import Evaluation, evaluated
 from scenic.falsification.lineages import Ancestry, Lineage, LineageStep
@@ -145,7 +145,7 @@ class Branching:
 
     """
 
-    def __init__(self, evaluation: Evaluation, ancestry: Ancestry, engine: Engine | None) -> None:
+    def __init__(self, evaluation: Evaluation, ancestry: Ancestry, engine: BatchEngine | None) -> None:
         self._evaluation = evaluation
         self._ancestry = ancestry
         self._engine = engine

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from scenic.batch.engines import Engine, OverExecutor, Processes
+from scenic.batch.engines import BatchEngine, OverExecutor, Processes
 from scenic.batch.simulations import Simulations, SimulationSettings
 from scenic.dataclass import dataclass
 from scenic.estimation.asking import asked_of
@@ -164,7 +164,7 @@ def estimate_runs(
     asked: Asked,
     stop: Stop | None = None,
     *,
-    engine: Engine | None = None,
+    engine: BatchEngine | None = None,
     folder: EstimateFolder | None = None,
 ) -> Estimate:
     """Estimate a probability, going on with what the folder holds.
@@ -186,7 +186,7 @@ class _Course:
     """The runs of one estimate, until they are enough."""
 
     def __init__(
-        self, runs: Runs, asked: Asked, stop: Stop, engine: Engine | None, folder: EstimateFolder | None
+        self, runs: Runs, asked: Asked, stop: Stop, engine: BatchEngine | None, folder: EstimateFolder | None
     ) -> None:
         self._runs, self._asked, self._stop = runs, asked, stop
         self._engine, self._folder = engine, folder
@@ -506,7 +506,7 @@ def estimate(
     return _estimates(programs, question, Stop(time_limit), _engine(processes, executor), folder, resume)
 
 
-def _engine(processes: int, executor: "Executor | None") -> Engine | None:
+def _engine(processes: int, executor: "Executor | None") -> BatchEngine | None:
     """The place where simulations are made; ``None`` is this process."""
     if executor is not None:
         return OverExecutor(executor, max(2, processes))
@@ -517,7 +517,7 @@ def _estimates(
     programs: Sequence[Runs],
     asked: Asked,
     stop: Stop,
-    engine: Engine | None,
+    engine: BatchEngine | None,
     folder: str | Path | None,
     resume: bool,
 ) -> Estimate:

@@ -23,7 +23,7 @@ from scenic.runtime.scenes.sampler import DEFAULT_ATTEMPTS
 from scenic.runtime.scenes.scene import Scene
 
 if TYPE_CHECKING:
-    from scenic.batch.engines import Engine
+    from scenic.batch.engines import BatchEngine
     from scenic.batch.simulations import Simulations
     from scenic.runtime.scenes.scenario import Scenario
 
@@ -297,7 +297,7 @@ def checked(row: dict[str, Any]) -> dict[str, Any]:
 
 
 def evaluated(
-    evaluation: Evaluation, tasks: Iterable[RunTask], engine: "Engine | None"
+    evaluation: Evaluation, tasks: Iterable[RunTask], engine: "BatchEngine | None"
 ) -> Generator[dict[str, Any]]:
     """The rows of runs in order, each as soon as it and those before it are there."""
     if engine is None:
@@ -307,7 +307,7 @@ def evaluated(
 
 
 def evaluated_together(
-    evaluation: Evaluation, parts: Iterable[range], engine: "Engine | None"
+    evaluation: Evaluation, parts: Iterable[range], engine: "BatchEngine | None"
 ) -> Generator[dict[str, Any]]:
     """The rows of scenes of the seed, in order; those of one part are evaluated as columns."""
     function = _Together(evaluation)

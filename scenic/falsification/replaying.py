@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from scenic.simulators.simulation import Simulation
     from scenic.simulators.simulator import Simulator
 
-__all__ = ["KeptRun", "Repetition", "ReplayError", "kept_run", "program_of", "replay"]
+__all__ = ["KeptRun", "ReplayError", "ReplayedRun", "kept_run", "program_of", "replay"]
 
 _FORMS: Final = ("jsonl", "parquet", "xosc", "xml")
 
@@ -67,7 +67,7 @@ class KeptRun:
 
 
 @dataclass(slots=True)
-class Repetition:
+class ReplayedRun:
     """A run that was made again.
 
     Attributes:
@@ -212,7 +212,7 @@ def replay(
     objectives: Sequence[Objective] | None = None,
     shown: bool = False,
     accept_changes: bool = False,
-) -> Repetition:
+) -> ReplayedRun:
     """Make a run again, and compare it with what was kept.
 
     Args:
@@ -266,7 +266,7 @@ def _search_again(
     objectives: Sequence[Objective] | None,
     shown: bool,
     folder: Path,
-) -> Repetition:
+) -> ReplayedRun:
     settings = run.settings
     goals = run.origin.get("objectives")
     if objectives is None and goals is not None:
@@ -299,7 +299,7 @@ def _search_again(
     )
     row_again = _made_again(run, scenario, evaluation, numbers)
     new_folder = folder / "counterexamples" / f"{run.number:04d}"
-    result = Repetition(row_again)
+    result = ReplayedRun(row_again)
     if objectives is None:
         # The value is known from the row alone.
         result.unknown.append(
@@ -347,7 +347,7 @@ def _anything(_result: object) -> float:
     return 0.0
 
 
-def _show(result: Repetition, made: Path, scenario: "Scenario") -> None:
+def _show(result: ReplayedRun, made: Path, scenario: "Scenario") -> None:
     """Take the page of a simulation, or make page and picture of a scene."""
     page, scene = made / "play.html", made / "scene.json"
     if page.exists():
@@ -384,7 +384,7 @@ def _simulations(
 
 def _simulate_again(
     run: KeptRun, scenario: "Scenario", simulator: "str | Simulator | None", shown: bool, folder: Path
-) -> Repetition:
+) -> ReplayedRun:
     settings = run.settings
     running = SimulationSettings(
         settings["seed"],
@@ -400,10 +400,10 @@ def _simulate_again(
     row = batch(run.number)
     if row.about is None:
         words = row.missing if row.error is None else row.error.message
-        return Repetition({}, [f"now there is no simulation: {words}"])
+        return ReplayedRun({}, [f"now there is no simulation: {words}"])
     assert run.trajectory is not None
     trajectory = folder / f"simulation-{run.number:04d}.{run.form}"
-    result = Repetition(row.about, file_departures(run.trajectory, trajectory, run.form))
+    result = ReplayedRun(row.about, file_departures(run.trajectory, trajectory, run.form))
     if row.page is not None:
         from scenic.formats.course_page import course_page
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from scenic.batch.engines import Engine, Processes
+from scenic.batch.engines import BatchEngine, Processes
 from scenic.batch.folders.file_digests import files_of_origin
 from scenic.batch.simulations import Simulations, SimulationSettings
 from scenic.dataclass import dataclass
@@ -173,7 +173,7 @@ def search(
     plan: SearchPlan,
     limits: SearchLimits,
     *,
-    engine: Engine | None = None,
+    engine: BatchEngine | None = None,
     folder: SearchFolder | None = None,
 ) -> FalsificationResult:
     """Search a scenario, going on with what the folder holds.
@@ -196,7 +196,7 @@ def _search(
     scenario: "Scenario",
     plan: SearchPlan,
     limits: SearchLimits,
-    engine: Engine | None,
+    engine: BatchEngine | None,
     folder: SearchFolder | None,
 ) -> FalsificationResult:
     space = space_of(scenario, plan.space)
@@ -262,7 +262,7 @@ def _told(row: Mapping[str, Any]) -> float:
 
 
 def _evaluated(
-    evaluation: Evaluation, points: Floats, first: int, done: int, wanted: int, engine: Engine | None
+    evaluation: Evaluation, points: Floats, first: int, done: int, wanted: int, engine: BatchEngine | None
 ) -> Generator[list[dict[str, Any]]]:
     """The rows of points ``done`` to ``wanted`` of a generation whose first run has the number ``first``.
 

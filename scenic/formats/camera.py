@@ -6,7 +6,7 @@ from itertools import product
 import numpy as np
 
 from scenic.dataclass import dataclass
-from scenic.formats.mesh_instances import Array, Instance
+from scenic.formats.mesh_instances import Array, MeshInstance
 from scenic.formats.regions import bounds as workspace_bounds
 from scenic.formats.scene_protocols import Scene
 
@@ -68,7 +68,7 @@ class Camera:
         return np.asarray(rays)
 
 
-def corners(instances: Sequence[Instance]) -> Array:
+def corners(instances: Sequence[MeshInstance]) -> Array:
     """Return corners of the objects' boxes, shape ``(8 n, 3)``; of a unit box at the origin if there are none."""
     if not instances:
         return _UNIT_CORNERS
@@ -83,7 +83,7 @@ def ground_height(points: Array) -> float:
     return float(low if low < 0 or low > 4 * extent else 0.0)
 
 
-def framed(scene: Scene, instances: Sequence[Instance], outlook: Outlook) -> Array:
+def framed(scene: Scene, instances: Sequence[MeshInstance], outlook: Outlook) -> Array:
     """The points that a picture of a scene has to show, ``(n, 3)``: corners of objects, and of the workspace."""
     points = corners(instances)
     if (least := getattr(scene.workspace, "minimumZoomSize", 0.0)) > 0:

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from scenic.formats.camera import Camera, Outlook, framing
-from scenic.formats.mesh_instances import Array, Instance
+from scenic.formats.mesh_instances import Array, MeshInstance
 from scenic.formats.poses import rotation_matrix
 from scenic.language.errors import ScenicError
 from scenic.language.spelling import nearest
@@ -46,7 +46,7 @@ class Track:
 
     """
 
-    def __init__(self, states: Sequence[Sequence[Instance]], name: str | int, timestep: float) -> None:
+    def __init__(self, states: Sequence[Sequence[MeshInstance]], name: str | int, timestep: float) -> None:
         self._size = max(_chosen(states, name).size)
         whole = [_in_state(state, name) for state in states]
         present = [number for number, item in enumerate(whole) if item is not None]
@@ -76,13 +76,13 @@ class Track:
         return framing(middle + circle, aspect, replace(outlook, azimuth=azimuth))
 
 
-def _in_state(state: Sequence[Instance], name: str | int) -> Instance | None:
+def _in_state(state: Sequence[MeshInstance], name: str | int) -> MeshInstance | None:
     if isinstance(name, int):
         return state[name] if name < len(state) else None
     return next((item for item in state if item.name == name or (name == "ego" and item.is_ego)), None)
 
 
-def _chosen(states: Sequence[Sequence[Instance]], name: str | int) -> Instance:
+def _chosen(states: Sequence[Sequence[MeshInstance]], name: str | int) -> MeshInstance:
     for state in states:
         item = _in_state(state, name)
         if item is not None:

@@ -16,7 +16,7 @@ import numpy.typing as npt
 from scenic.dataclass import dataclass
 from scenic.formats.files import safe_name, write
 from scenic.formats.labels import Observation, document, observe
-from scenic.formats.mesh_instances import Gallery, Surfaces
+from scenic.formats.mesh_instances import Gallery, MeshSurfaces
 from scenic.formats.overlay import overlay
 from scenic.formats.png import encoded
 from scenic.formats.scene_cameras import viewpoint
@@ -70,7 +70,7 @@ class Photographer:
         classes: Iterable[str] = (),
         joint: str = "-",
         previewed: bool = False,
-        surfaces: Surfaces | None = None,
+        surfaces: MeshSurfaces | None = None,
     ) -> None:
         self._camera = camera
         self._size = size
@@ -78,7 +78,7 @@ class Photographer:
         self.categories = {name: number for number, name in enumerate(self._classes, 1)}
         self._joint = joint
         self._previewed = previewed
-        self._surfaces = Surfaces() if surfaces is None else surfaces
+        self._surfaces = MeshSurfaces() if surfaces is None else surfaces
 
     def shoot(self, scene: Scene) -> Shot:
         """Return the images and labels of a scene."""

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from scenic.formats.html import Page, packed, page_text
 from scenic.formats.json_lines import number
 from scenic.formats.lamps import NO_COLORS
-from scenic.formats.trajectories import Course
+from scenic.formats.trajectories import EndedSimulation
 
 __all__ = ["PoseTape", "ShownCourse", "course_data", "course_page"]
 
@@ -50,7 +50,7 @@ class PoseTape:
 class ShownCourse:
     """The objects of a simulation, also those that came later, as a scene to be drawn."""
 
-    def __init__(self, course: Course) -> None:
+    def __init__(self, course: EndedSimulation) -> None:
         scene = course.scene
         self.objects = tuple(course.objects)
         self.egoObject = scene.egoObject
@@ -60,7 +60,7 @@ class ShownCourse:
         self.origin = scene.origin
 
 
-def course_data(course: Course, tape: PoseTape) -> dict[str, Any]:
+def course_data(course: EndedSimulation, tape: PoseTape) -> dict[str, Any]:
     """Return the data that the page needs of a simulation, all of whose states are on the tape, as plain data."""
     page = Page("")
     poses = tape.poses()

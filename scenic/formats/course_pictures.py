@@ -17,12 +17,12 @@ from scenic.formats.course_page import PoseTape, ShownCourse
 from scenic.formats.files import check_writable, write
 from scenic.formats.imaging import require_pillow
 from scenic.formats.lamps import first_colors
-from scenic.formats.mesh_instances import Gallery, Instance, Picture, lit, resting
+from scenic.formats.mesh_instances import Gallery, MeshInstance, Picture, lit, resting
 from scenic.formats.png import encoded
 from scenic.formats.render import SIZE, render
 from scenic.formats.scene_protocols import Scene
 from scenic.formats.textures import placed_errors
-from scenic.formats.trajectories import Course
+from scenic.formats.trajectories import EndedSimulation
 from scenic.runtime.dynamics.series import Film
 
 __all__ = ["StatePictures", "evenly", "film_of", "sheet"]
@@ -72,7 +72,7 @@ class StatePictures:
         instances = gallery.add(scene)
         self.timestep = timestep
         self._scene = scene
-        self._states: list[tuple[Instance, ...]] = [instances]
+        self._states: list[tuple[MeshInstance, ...]] = [instances]
         if poses is not None:
             numbers = {id(thing): number for number, thing in enumerate(scene.objects)}
             columns = [numbers[id(instance.thing)] for instance in instances]
@@ -88,7 +88,7 @@ class StatePictures:
         self._surfaces = gallery.surfaces
 
     @classmethod
-    def of_course(cls, course: Course, tape: PoseTape) -> "StatePictures":
+    def of_course(cls, course: EndedSimulation, tape: PoseTape) -> "StatePictures":
         """Return the pictures of a simulation, all of whose states are on the tape."""
         return cls(ShownCourse(course), tape.poses(), course.timestep, tape.colors)
 
@@ -131,7 +131,7 @@ class StatePictures:
                 yield render(picture, 0, size, camera=camera, around=around)
 
 
-def _placed(instances: Sequence[Instance], poses: npt.NDArray[np.float64]) -> tuple[Instance, ...]:
+def _placed(instances: Sequence[MeshInstance], poses: npt.NDArray[np.float64]) -> tuple[MeshInstance, ...]:
     """Objects in the poses ``(n, 7)`` of a state, without those that are not there yet."""
     return tuple(
         replace(instance, position=(x, y, z), quaternion=(turn[0], turn[1], turn[2], turn[3]))
@@ -140,7 +140,7 @@ def _placed(instances: Sequence[Instance], poses: npt.NDArray[np.float64]) -> tu
     )
 
 
-def _near_ego(states: Sequence[Sequence[Instance]]) -> list[Instance]:
+def _near_ego(states: Sequence[Sequence[MeshInstance]]) -> list[MeshInstance]:
     """Return the ego and what is near it in some states, where objects are so far apart that all would be tiny; else none."""
     instances = [item for state in states for item in state]
     ego = next((item for item in instances if item.is_ego), None)
@@ -149,7 +149,7 @@ def _near_ego(states: Sequence[Sequence[Instance]]) -> list[Instance]:
     length = max(ego.size)
     if np.ptp([item.position for item in instances], axis=0).max() <= _WIDE * length:
         return []
-    near: list[Instance] = []
+    near: list[MeshInstance] = []
     for state in states:
         place = next((item.position for item in state if item.is_ego), None)
         near += [item for item in state if place and math.dist(item.position, place) <= _NEAR * length]

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from scenic.formats.image_coordinates import image_coordinates
-from scenic.formats.mesh_instances import Instance, Surface, distinct_labels, picture
+from scenic.formats.mesh_instances import MeshInstance, MeshSurface, distinct_labels, picture
 from scenic.formats.poses import Four, Triple
 from scenic.formats.scene_cameras import viewpoints
 from scenic.formats.scene_protocols import Scene
@@ -133,7 +133,7 @@ def _product(p: object, q: object) -> npt.NDArray[np.float64]:
     return np.asarray(quaternions.multiply(np.asarray(p, np.float64), np.asarray(q, np.float64)))
 
 
-def _node(instance: Instance, index: int, mesh: int, name: str) -> dict[str, Any]:
+def _node(instance: MeshInstance, index: int, mesh: int, name: str) -> dict[str, Any]:
     """Return the node of an object."""
     return {
         "name": name,
@@ -221,7 +221,7 @@ class _Buffers:
         self.views: list[dict[str, Any]] = []
         self.accessors: list[dict[str, Any]] = []
 
-    def surface(self, surface: Surface) -> list[tuple[Triple | None, dict[str, Any]]]:
+    def surface(self, surface: MeshSurface) -> list[tuple[Triple | None, dict[str, Any]]]:
         """Store a surface; returns the primitives that use it, without a material, with their colours if they have their own."""
         vertices = surface.vertices.astype("<f4")
         positions = self._add(vertices, "VEC3", _FLOAT, _ARRAY_BUFFER)
@@ -237,7 +237,7 @@ class _Buffers:
             for paint, faces in surface.painted()
         ]
 
-    def covered(self, surface: Surface, instance: Instance, image: ImageTexture) -> dict[str, Any]:
+    def covered(self, surface: MeshSurface, instance: MeshInstance, image: ImageTexture) -> dict[str, Any]:
         """Store a surface with an image on it, corner by corner."""
         corners = surface.faces.reshape(-1)
         vertices = surface.vertices[corners].astype("<f4")

@@ -18,7 +18,15 @@ import numpy.typing as npt
 from scenic.formats.colors import linear
 from scenic.formats.json_lines import plain
 from scenic.formats.lamps import COLORS, color_numbers, first_colors
-from scenic.formats.mesh_instances import Array, Gallery, GroundPiece, Instance, Surface, places_of, resting
+from scenic.formats.mesh_instances import (
+    Array,
+    Gallery,
+    GroundPiece,
+    MeshInstance,
+    MeshSurface,
+    places_of,
+    resting,
+)
 from scenic.formats.poses import euler_angles, rotation_matrix
 from scenic.formats.regions import outlines, view_outline
 from scenic.formats.scene_protocols import Scene
@@ -47,7 +55,7 @@ class Page:
         scene: Scene,
         places: Array | None = None,
         colors: Sequence[Mapping[str, str]] | None = None,
-    ) -> tuple[Instance, ...]:
+    ) -> tuple[MeshInstance, ...]:
         """Put a scene on the page, after the others; gives what is drawn of it.
 
         Args:
@@ -168,7 +176,7 @@ def page(scenes: Iterable[Scene], title: str) -> str:
     return made.text()
 
 
-def _mesh(surface: Surface) -> dict[str, str]:
+def _mesh(surface: MeshSurface) -> dict[str, str]:
     """Corners as 32-bit floats; normals as four 16-bit integers, the last for alignment; 32-bit indices.
 
     Colours of corners, where some have their own, are four bytes of linear light, the last 0 for those that have none.
@@ -193,7 +201,7 @@ def packed(values: npt.NDArray[Any]) -> str:
     return base64.b64encode(values.tobytes()).decode("ascii")
 
 
-def _object(instance: Instance) -> dict[str, Any]:
+def _object(instance: MeshInstance) -> dict[str, Any]:
     """Return the page's data of an object: its place, and the properties that its class adds to the built-in ones."""
     builtin = properties_of("Object")
     return {
@@ -220,7 +228,7 @@ def _points(line: Array) -> list[list[float]]:
     return [[round(value, 4) for value in point] for point in line.tolist()]
 
 
-def _view(instance: Instance) -> list[list[list[float]]] | None:
+def _view(instance: MeshInstance) -> list[list[list[float]]] | None:
     """Lines that show the view of an object: of the ego, and of objects with ``showVisibleRegion``."""
     thing = instance.thing
     if not (instance.is_ego or thing.properties.get("showVisibleRegion", False)):

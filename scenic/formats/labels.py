@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from scenic.dataclass import dataclass
 from scenic.formats.buffers import Lens, seen
-from scenic.formats.mesh_instances import Array, Gallery, Instance
+from scenic.formats.mesh_instances import Array, Gallery, MeshInstance
 from scenic.formats.poses import euler_angles
 from scenic.formats.render import paint
 from scenic.formats.scene_cameras import Viewpoint
@@ -35,7 +35,7 @@ DEFAULT_RANGE = 50.0
 
 
 @dataclass(frozen=True, slots=True)
-class Box:
+class PixelBox:
     """A rectangle of pixels: left, top, width and height."""
 
     left: int
@@ -48,7 +48,7 @@ class Box:
 
 
 @dataclass(frozen=True, slots=True)
-class Label:
+class ImageLabel:
     """An object as a camera sees it.
 
     Attributes:
@@ -67,12 +67,12 @@ class Label:
     """
 
     index: int
-    instance: Instance
+    instance: MeshInstance
     visible: bool
     pixels: int
     full_pixels: int
-    box: Box | None
-    full_box: Box | None
+    box: PixelBox | None
+    full_box: PixelBox | None
     corners: Array
     depth: float
     nearest: float | None
@@ -100,9 +100,9 @@ class Observation:
     rgb: npt.NDArray[np.uint8] | None
     depth: npt.NDArray[np.float32]
     objects: npt.NDArray[np.int32]
-    labels: tuple[Label, ...]
+    labels: tuple[ImageLabel, ...]
 
-    def mask(self, label: Label) -> npt.NDArray[np.bool_]:
+    def mask(self, label: ImageLabel) -> npt.NDArray[np.bool_]:
         """Return the pixels that show an object, ``(height, width)``."""
         return np.asarray(self.objects == label.index)
 
@@ -145,11 +145,11 @@ def observe(
 def _labels(
     scene: Scene,
     viewpoint: Viewpoint,
-    instances: list[Instance],
+    instances: list[MeshInstance],
     index: dict[int, int],
     objects: npt.NDArray[np.int32],
     depth: npt.NDArray[np.float32],
-) -> tuple[Label, ...]:
+) -> tuple[ImageLabel, ...]:
     distance = viewpoint.owner.properties.get("visibleDistance", DEFAULT_RANGE)
     views = Views.fixed(
         viewpoint.camera.eye,
@@ -175,7 +175,7 @@ def _labels(
         middle = viewpoint.project(body.poses.position)
         pixels = int(counts[number + 1])
         labels.append(
-            Label(
+            ImageLabel(
                 index=number,
                 instance=item,
                 visible=bool(sees_bodies(views, body, occluders, 1)[0]),
@@ -205,7 +205,7 @@ def body_of(thing: SceneObject) -> Body:
     return Body((unit,), None, poses)
 
 
-def _alone(views: Views, viewpoint: Viewpoint, body: Body) -> tuple[int, Box | None]:
+def _alone(views: Views, viewpoint: Viewpoint, body: Body) -> tuple[int, PixelBox | None]:
     """Return the number of pixels that a body would have without other bodies, and the rectangle around them."""
     width, height = viewpoint.size
     points = viewpoint.project(body.poses.to_world(body.meshes[0].vertices))
@@ -234,16 +234,16 @@ def _alone(views: Views, viewpoint: Viewpoint, body: Body) -> tuple[int, Box | N
     mask = np.isfinite(distances).reshape(column.shape)
     box = _box(mask)
     if box is not None:
-        box = Box(box.left + left, box.top + top, box.width, box.height)
+        box = PixelBox(box.left + left, box.top + top, box.width, box.height)
     return int(mask.sum()), box
 
 
-def _box(mask: npt.NDArray[np.bool_]) -> Box | None:
+def _box(mask: npt.NDArray[np.bool_]) -> PixelBox | None:
     rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
     if not len(rows):
         return None
     left, top = int(columns[0]), int(rows[0])
-    return Box(left, top, int(columns[-1]) - left + 1, int(rows[-1]) - top + 1)
+    return PixelBox(left, top, int(columns[-1]) - left + 1, int(rows[-1]) - top + 1)
 
 
 def document(observation: Observation, scene: Scene) -> dict[str, Any]:
@@ -271,7 +271,7 @@ def document(observation: Observation, scene: Scene) -> dict[str, Any]:
     }
 
 
-def _texture(item: Instance) -> dict[str, Any]:
+def _texture(item: MeshInstance) -> dict[str, Any]:
     """Return the image on an object, as plain data; nothing where there is none."""
     texture = texture_of(item.thing.properties.get("texture"), item.color, item.folder)
     if not isinstance(texture, ImageTexture):
@@ -279,7 +279,7 @@ def _texture(item: Instance) -> dict[str, Any]:
     return {"texture": {"image": texture.name, "sha256": texture.digest()}}
 
 
-def _entry(label: Label) -> dict[str, Any]:
+def _entry(label: ImageLabel) -> dict[str, Any]:
     item = label.instance
     return {
         "index": label.index,

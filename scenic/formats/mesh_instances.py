@@ -55,7 +55,7 @@ CREASE = np.cos(np.radians(35))
 
 
 @dataclass(frozen=True, slots=True)
-class Surface:
+class MeshSurface:
     """A mesh in the unit box with a normal for every corner; corners at sharp edges occur several times.
 
     ``vertices`` and ``normals`` have shape ``(v, 3)``, ``faces`` ``(f, 3)``. ``paints``, ``(v, 3)``, are the colours in sRGB of
@@ -94,7 +94,7 @@ class Surface:
 
 
 @dataclass(frozen=True, slots=True)
-class Instance:
+class MeshInstance:
     """One object as it is drawn: a surface with a place, a rotation ``(x, y, z, w)``, a size and a colour."""
 
     surface: int
@@ -146,11 +146,11 @@ class GroundPiece:
 class Picture:
     """Scenes as drawn: the surfaces they share, the instances of each scene, its parameters, the ground under them, lights and signs."""
 
-    surfaces: tuple[Surface, ...]
-    scenes: tuple[tuple[Instance, ...], ...]
+    surfaces: tuple[MeshSurface, ...]
+    scenes: tuple[tuple[MeshInstance, ...], ...]
     params: tuple[Mapping[str, object], ...]
     grounds: tuple[tuple[GroundPiece, ...], ...]
-    lamps: tuple[tuple[Instance, ...], ...] = ()
+    lamps: tuple[tuple[MeshInstance, ...], ...] = ()
 
 
 class _Stand:
@@ -159,25 +159,25 @@ class _Stand:
     properties: Final[Mapping[str, object]] = MappingProxyType({})
 
 
-KeyedLamp = tuple[str, Instance]
+KeyedLamp = tuple[str, MeshInstance]
 """A light or a sign with the key of its colour."""
 
 
-def lit(lamps: Iterable[KeyedLamp], colors: Mapping[str, str]) -> tuple[Instance, ...]:
+def lit(lamps: Iterable[KeyedLamp], colors: Mapping[str, str]) -> tuple[MeshInstance, ...]:
     """Return lamps in the colours of a moment, by their keys."""
     return tuple(replace(item, color=(*COLORS[colors.get(key, "off")], 1.0)) for key, item in lamps)
 
 
-class Surfaces:
+class MeshSurfaces:
     """The surfaces of meshes at sizes, of which those used last are kept."""
 
     _MOST: Final = 256
 
     def __init__(self) -> None:
         # The mesh is kept beside its surface: its identity stays taken while the entry lives.
-        self._known: dict[tuple[int, Triple], tuple[UnitMesh | Appearance, Surface]] = {}
+        self._known: dict[tuple[int, Triple], tuple[UnitMesh | Appearance, MeshSurface]] = {}
 
-    def of(self, mesh: UnitMesh | Appearance, size: Triple) -> Surface:
+    def of(self, mesh: UnitMesh | Appearance, size: Triple) -> MeshSurface:
         """Return the surface of a mesh that is used at a size."""
         found = self._known.pop((id(mesh), size), None) or (mesh, surface_of(mesh, size))
         self._known[id(mesh), size] = found
@@ -195,9 +195,9 @@ class Gallery:
 
     """
 
-    def __init__(self, classes: Iterable[str] = (), surfaces: Surfaces | None = None) -> None:
-        self._made = Surfaces() if surfaces is None else surfaces
-        self._surfaces: list[Surface] = []
+    def __init__(self, classes: Iterable[str] = (), surfaces: MeshSurfaces | None = None) -> None:
+        self._made = MeshSurfaces() if surfaces is None else surfaces
+        self._surfaces: list[MeshSurface] = []
         # The mesh is kept beside its number: its identity stays taken while the table lives.
         self._known: dict[int, tuple[UnitMesh | Appearance, int]] = {}
         self._patches: dict[int, tuple[Patch, GroundPiece]] = {}
@@ -212,11 +212,11 @@ class Gallery:
         return tuple(self._colors)
 
     @property
-    def surfaces(self) -> tuple[Surface, ...]:
+    def surfaces(self) -> tuple[MeshSurface, ...]:
         """The meshes of all scenes added so far."""
         return tuple(self._surfaces)
 
-    def add(self, scene: Scene) -> tuple[Instance, ...]:
+    def add(self, scene: Scene) -> tuple[MeshInstance, ...]:
         """Add a scene: all objects but those with ``render`` false and those of no size.
 
         Raises `AppearanceError`, at the object's place where the scene knows it, for an unknown appearance.
@@ -235,7 +235,7 @@ class Gallery:
             default = self._default_color(class_name, shades[class_name])
             shades[class_name] += thing.color is None
             instances.append(
-                Instance(
+                MeshInstance(
                     surface=self.number(_appearance(scene, number) or thing.shape.mesh, size),
                     thing=thing,
                     name=names.get(thing),
@@ -266,7 +266,7 @@ class Gallery:
     def _lamp(self, lamp: Lamp) -> "KeyedLamp":
         x, y, z = lamp.position
         half = 0.5 * lamp.yaw
-        instance = Instance(
+        instance = MeshInstance(
             surface=self.number(lamp_form(lamp.form), lamp.size),
             thing=cast("SceneObject", _Stand()),
             name=None,
@@ -283,7 +283,7 @@ class Gallery:
         known = self._patches.get(id(patch))
         if known is None:
             normals = np.tile([0.0, 0.0, 1.0], (len(patch.vertices), 1))
-            self._surfaces.append(Surface(patch.vertices, normals, patch.faces))
+            self._surfaces.append(MeshSurface(patch.vertices, normals, patch.faces))
             piece = GroundPiece(len(self._surfaces) - 1, (*patch.color, 1.0), patch.layer, patch.is_flat)
             known = self._patches[id(patch)] = (patch, piece)
         return known[1]
@@ -337,7 +337,7 @@ def picture(scenes: Iterable[Scene], *, ground: bool = False) -> Picture:
     return Picture(gallery.surfaces, tuple(instances_of_scenes), tuple(params), tuple(grounds), tuple(lamps))
 
 
-def resting(instances: Sequence[Instance]) -> tuple[Instance, ...]:
+def resting(instances: Sequence[MeshInstance]) -> tuple[MeshInstance, ...]:
     """Return objects of the 2D mode as they are shown on a map: no higher than cars are, and on the ground.
 
     That mode gives objects the height of their longest side, and puts their middles on the plane. Those with an appearance
@@ -353,7 +353,7 @@ def resting(instances: Sequence[Instance]) -> tuple[Instance, ...]:
     )
 
 
-def _shown_height(instance: Instance) -> float:
+def _shown_height(instance: MeshInstance) -> float:
     width, length, height = instance.size
     appearance = appearance_of(instance.thing)
     if appearance is None:
@@ -361,12 +361,12 @@ def _shown_height(instance: Instance) -> float:
     return appearance.size[2] if height == max(width, length) else height
 
 
-def places_of(instances: Iterable[Instance]) -> Array:
+def places_of(instances: Iterable[MeshInstance]) -> Array:
     """Return the positions of instances, ``(n, 3)``."""
     return np.array([instance.position for instance in instances], dtype=np.float64).reshape(-1, 3)
 
 
-def distinct_labels(instances: Iterable[Instance]) -> list[str]:
+def distinct_labels(instances: Iterable[MeshInstance]) -> list[str]:
     """A name for each instance that no other has: its label, with a number from the second use on."""
     names: dict[str, None] = {}
     for instance in instances:
@@ -385,7 +385,7 @@ def _color(thing: SceneObject, default: Triple) -> Four:
     return (red, green, blue, alpha[0] if alpha else 1.0)
 
 
-def surface_of(mesh: UnitMesh | Appearance, size: Triple) -> Surface:
+def surface_of(mesh: UnitMesh | Appearance, size: Triple) -> MeshSurface:
     """Return the mesh with normals that are shared across smooth edges and split at sharp ones.
 
     ``size`` is a size the mesh is used at: angles between faces are those of the mesh at that size. The normals are
@@ -403,7 +403,7 @@ def surface_of(mesh: UnitMesh | Appearance, size: Triple) -> Surface:
     if paints is not None:
         columns.append(np.nan_to_num(paints * 255, nan=-1.0).astype(np.int64))
     _, first, index = np.unique(np.column_stack(columns), axis=0, return_index=True, return_inverse=True)
-    return Surface(
+    return MeshSurface(
         vertices[faces.reshape(-1)[first]],
         unit[first],
         index.reshape(-1, 3).astype(np.int64),

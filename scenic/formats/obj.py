@@ -9,7 +9,7 @@ from typing import Final
 
 import numpy as np
 
-from scenic.formats.mesh_instances import Instance, Surface, distinct_labels, picture
+from scenic.formats.mesh_instances import MeshInstance, MeshSurface, distinct_labels, picture
 from scenic.formats.poses import Four
 from scenic.formats.scene_protocols import Scene
 
@@ -40,14 +40,16 @@ def obj(scene: Scene, library: str) -> tuple[bytes, bytes]:
     return _encoded(lines), _encoded(_materials(materials))
 
 
-def _colors(instance: Instance, surface: Surface) -> list[Four]:
-    """The colours of the object's faces, in the order of `Surface.painted`."""
+def _colors(instance: MeshInstance, surface: MeshSurface) -> list[Four]:
+    """The colours of the object's faces, in the order of `MeshSurface.painted`."""
     return [
         instance.color if paint is None else (*paint, instance.color[3]) for paint, _ in surface.painted()
     ]
 
 
-def _surface(instance: Instance, surface: Surface, first: int, materials: dict[Four, str]) -> Iterator[str]:
+def _surface(
+    instance: MeshInstance, surface: MeshSurface, first: int, materials: dict[Four, str]
+) -> Iterator[str]:
     """Yield the lines of an object whose corners are numbered from ``first`` on."""
     matrix = instance.matrix()
     corners = surface.vertices @ matrix[:3, :3].T + matrix[:3, 3]

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from scenic.dataclass import dataclass
 from scenic.formats.camera import corners, ground_height
 from scenic.formats.colors import linear
-from scenic.formats.mesh_instances import Array, GroundPiece, Instance, Surface
+from scenic.formats.mesh_instances import Array, GroundPiece, MeshInstance, MeshSurface
 from scenic.formats.poses import rotation_matrix
 from scenic.formats.scenery import USUAL, Scenery
 from scenic.formats.textures import ImageTexture, Texture, TextureError, texture_of
@@ -61,8 +61,8 @@ class Stage:
 
     def __init__(
         self,
-        surfaces: Sequence[Surface],
-        instances: Sequence[Instance],
+        surfaces: Sequence[MeshSurface],
+        instances: Sequence[MeshInstance],
         scenery: Scenery = USUAL,
         pieces: Sequence[GroundPiece] = (),
         around: Array | None = None,
@@ -236,7 +236,7 @@ def _density(values: Singles, triangles: Singles) -> Singles:
     return np.asarray(np.sqrt(share), np.float32)
 
 
-def _paint(surfaces: Sequence[Surface], albedo: npt.NDArray[np.float32]) -> npt.NDArray[np.int32]:
+def _paint(surfaces: Sequence[MeshSurface], albedo: npt.NDArray[np.float32]) -> npt.NDArray[np.int32]:
     """Give triangles of surfaces, one after the other, the linear colours of their own, in ``albedo``.
 
     Returns a number for each triangle ``(t,)``, 0 for those without a colour of their own, that differs between colours of a surface.
@@ -255,7 +255,7 @@ def _paint(surfaces: Sequence[Surface], albedo: npt.NDArray[np.float32]) -> npt.
     return paint_numbers
 
 
-def _textures(instances: Sequence[Instance]) -> dict[int, Texture | ImageTexture]:
+def _textures(instances: Sequence[MeshInstance]) -> dict[int, Texture | ImageTexture]:
     """Return the textures of instances that have one, by their numbers; their files can be read."""
     texture_of_instance = {}
     for number, item in enumerate(instances):

@@ -12,7 +12,7 @@ from scenic.runtime.dynamics.recorders import Filed
 __all__ = [
     "FORMAT",
     "VERSION",
-    "Course",
+    "EndedSimulation",
     "LinesFile",
     "RunningSimulation",
     "TrajectoryFile",
@@ -32,14 +32,14 @@ class RunningSimulation(Protocol):
     timestep: float
 
 
-class Course(RunningSimulation, Protocol):
+class EndedSimulation(RunningSimulation, Protocol):
     """A simulation that has run."""
 
     scene: Any
     result: Any
 
 
-def course_document(course: Course, *, k: int, tries: int) -> dict[str, Any]:
+def course_document(course: EndedSimulation, *, k: int, tries: int) -> dict[str, Any]:
     """Return the facts about the whole simulation."""
     numbers = {id(thing): index for index, thing in enumerate(course.objects)}
     names = course.scene.names
@@ -78,7 +78,7 @@ def course_document(course: Course, *, k: int, tries: int) -> dict[str, Any]:
     }
 
 
-def _notes(course: Course) -> dict[str, Any]:
+def _notes(course: EndedSimulation) -> dict[str, Any]:
     """Return what the simulation noted of its objects, if anything."""
     notes = getattr(course, "notes", ())
     rows = [{"step": step, "object": thing, "text": text} for step, thing, text in notes]

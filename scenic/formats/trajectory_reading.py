@@ -14,7 +14,7 @@ from scenic.formats.trajectories import FORMAT, VERSION
 from scenic.formats.trajectory_tables import parquet_about, parquet_steps
 from scenic.language.errors import Located, MissingFileError
 
-__all__ = ["Trajectory", "TrajectoryFileError", "read_trajectory"]
+__all__ = ["TrajectoryArrays", "TrajectoryFileError", "read_trajectory"]
 
 Array = npt.NDArray[np.float64]
 
@@ -26,7 +26,7 @@ class TrajectoryFileError(Located):
 
 
 @dataclass(frozen=True, slots=True)
-class Trajectory:
+class TrajectoryArrays:
     """A simulation that was read.
 
     Attributes:
@@ -78,7 +78,7 @@ class Trajectory:
         return [value for _, value in found] if is_series else found
 
 
-def read_trajectory(path: str | Path) -> Trajectory:
+def read_trajectory(path: str | Path) -> TrajectoryArrays:
     """Return the simulation in a file.
 
     Raises:
@@ -109,9 +109,9 @@ def read_trajectory(path: str | Path) -> Trajectory:
         ) from error
 
 
-def _trajectory(about: dict[str, Any], steps: list[dict[str, Any]]) -> Trajectory:
+def _trajectory(about: dict[str, Any], steps: list[dict[str, Any]]) -> TrajectoryArrays:
     count = len(about["objects"])
-    return Trajectory(
+    return TrajectoryArrays(
         about,
         np.array([real(row["time"]) for row in steps], dtype=np.float64),
         np.array([_rows(row["positions"], count, 3) for row in steps]).reshape(len(steps), count, 3),

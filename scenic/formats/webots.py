@@ -14,7 +14,7 @@ import numpy.typing as npt
 from scenic.dataclass import dataclass
 from scenic.formats.camera import corners, ground_height
 from scenic.formats.files import make_folder, write
-from scenic.formats.mesh_instances import Instance, distinct_labels, picture
+from scenic.formats.mesh_instances import MeshInstance, distinct_labels, picture
 from scenic.formats.scene_protocols import Scene
 from scenic.formats.webots_reading import WORLD_PARAMETER, WorldFile, read_world
 from scenic.language.errors import ScenicValueError
@@ -176,7 +176,7 @@ def def_names(objects: Sequence[object]) -> dict[int, str]:
     return names
 
 
-def _labels(instances: Sequence[Instance]) -> list[str]:
+def _labels(instances: Sequence[MeshInstance]) -> list[str]:
     """Different names for the nodes; Webots allows no colon in them."""
     labels: list[str] = []
     for label in distinct_labels(instances):
@@ -320,7 +320,7 @@ def _node(kind: str, thing: Any, name: str, lines: Sequence[str], frame: Array |
     return f"DEF {name} {kind} {{\n" + "".join(f"  {line}\n" for line in body) + "}\n"
 
 
-def _surroundings(scene: Scene, instances: Sequence[Instance]) -> str:
+def _surroundings(scene: Scene, instances: Sequence[MeshInstance]) -> str:
     """Return the nodes of a world beside its objects: settings, view, sky, light and floor."""
     from scipy.spatial.transform import Rotation
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenic.graph.domain import Domain
-from scenic.graph.draws import Source
+from scenic.graph.draws import NumberSource
 from scenic.graph.kinds import Codec, Column, boxed
 from scenic.graph.node import Graph, Node
 from scenic.graph.operation import FAULT, OK, Call, Status
@@ -63,7 +63,7 @@ class Batch:
     def __init__(
         self,
         scheduler: Scheduler,
-        source: Source,
+        source: NumberSource,
         codec: Codec,
         *,
         domain: Domain | None = None,
@@ -100,7 +100,7 @@ class Batch:
         return self._scheduler.graph
 
     @property
-    def source(self) -> Source:
+    def source(self) -> NumberSource:
         """The random numbers of its lanes."""
         return self._source
 

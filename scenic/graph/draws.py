@@ -1,7 +1,7 @@
 """Random numbers of a scenario: every draw has an address, and a source gives the number at each address.
 
 An axis of the unit cube is named by its *address*, a 64-bit word made of the place in the program that draws and of how
-often that place has drawn before (`address`). A `Source` says which number each address has in each lane. The usual one
+often that place has drawn before (`address`). A `NumberSource` says which number each address has in each lane. The usual one
 hashes: the number is a function of a lane's key and of the address alone, and the key is one of (seed, scene, attempt).
 So no draw depends on which others there are, in which order they are asked for, in which batch, or by which worker.
 """
@@ -93,13 +93,13 @@ def open_unit(words: Words) -> Floats:
     return bits
 
 
-class Source(Protocol):
+class NumberSource(Protocol):
     """The random numbers of a number of lanes, by address."""
 
     def __len__(self) -> int:
         """The number of lanes."""
 
-    def take(self, lanes: NDArray[np.intp]) -> "Source":
+    def take(self, lanes: NDArray[np.intp]) -> "NumberSource":
         """Return the source of some of the lanes."""
 
     def uniforms(self, addresses: Words) -> Floats:
@@ -113,7 +113,7 @@ class Source(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class Lanes:
+class LaneOwners:
     """The owners of the numbers of some lanes: attempts ``(n,)`` at scenes ``(n,)`` of seeds ``(n,)``.
 
     ``seeds`` are words (`seed_word`), ``keys`` (`attempt_keys`) what the hash gives for all three.
@@ -131,9 +131,9 @@ class Lanes:
         attempts = np.array([attempt], dtype=np.int64)
         return cls(seeds, scenes, attempts, attempt_keys(scene_keys(seeds, scenes), attempts))
 
-    def take(self, lanes: NDArray[np.intp]) -> "Lanes":
+    def take(self, lanes: NDArray[np.intp]) -> "LaneOwners":
         """Return some of the lanes."""
-        return Lanes(self.seeds[lanes], self.scenes[lanes], self.attempts[lanes], self.keys[lanes])
+        return LaneOwners(self.seeds[lanes], self.scenes[lanes], self.attempts[lanes], self.keys[lanes])
 
 
 class Counter:
@@ -172,7 +172,10 @@ class Points:
     """
 
     def __init__(
-        self, values: Mapping[int, Floats], rest: Source, words: Mapping[int, Words] = MappingProxyType({})
+        self,
+        values: Mapping[int, Floats],
+        rest: NumberSource,
+        words: Mapping[int, Words] = MappingProxyType({}),
     ) -> None:
         self._values = values
         self._rest = rest
@@ -206,8 +209,8 @@ class Points:
         return result
 
 
-def each_of_distinct(source: Source, addresses: Words) -> Floats:
-    """The numbers of `Source.uniform_each`, by way of all lanes' numbers of all those addresses."""
+def each_of_distinct(source: NumberSource, addresses: Words) -> Floats:
+    """The numbers of `NumberSource.uniform_each`, by way of all lanes' numbers of all those addresses."""
     distinct, which = np.unique(addresses, return_inverse=True)
     numbers: Floats = source.uniforms(distinct)[which, np.arange(len(addresses))]
     return numbers

@@ -14,7 +14,7 @@ import numpy as np
 from scenic.graph.construction import make_node
 from scenic.graph.kinds import Kind
 from scenic.graph.node import Node
-from scenic.graph.operations.distributions import LOOKUP, SELECT, Table
+from scenic.graph.operations.distributions import LOOKUP, SELECT, LookupTable
 
 __all__ = ["Merger", "is_choice_of_draws"]
 
@@ -94,7 +94,7 @@ class _Choice:
         return make_node(SELECT, [self._index, *options])
 
     def _looked_up(self, values: np.ndarray[tuple[int], np.dtype[np.int64]]) -> Node:
-        return make_node(LOOKUP, [self._index], Table(Kind.INTEGER, values))
+        return make_node(LOOKUP, [self._index], LookupTable(Kind.INTEGER, values))
 
 
 def _likeness(node: Node) -> Hashable:

@@ -9,7 +9,7 @@ from typing import Any, Final, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from scenic.graph.draws import Floats, Lanes, Words, mix, open_unit
+from scenic.graph.draws import Floats, LaneOwners, Words, mix, open_unit
 
 __all__ = ["GivenPoints", "PointSet", "Sobol"]
 
@@ -21,14 +21,14 @@ class PointSet(Protocol):
     def retries(self) -> bool:
         """Return whether a row has other numbers for a scene whose first ones do not meet the requirements."""
 
-    def of_scenes(self, axes: NDArray[np.intp], count: int, lanes: Lanes) -> Floats:
+    def of_scenes(self, axes: NDArray[np.intp], count: int, lanes: LaneOwners) -> Floats:
         """The numbers ``(axes, lanes)`` of some of a program's ``count`` axes; NaN where a row has none, which are hashed.
 
         Axis -1 is none of them: it chooses among the boxes that analysis leaves of the cube (where it leaves a product of unions, among
         those of the first; the other choices are hashed).
         """
 
-    def of_simulations(self, draws: NDArray[np.intp], count: int, lanes: Lanes) -> Floats:
+    def of_simulations(self, draws: NDArray[np.intp], count: int, lanes: LaneOwners) -> Floats:
         """The numbers ``(draws, lanes)`` of draws in simulations of scenes with ``count`` axes.
 
         The attempt of a lane is that at a simulation of its scene.
@@ -73,16 +73,16 @@ class Sobol:
     def __repr__(self) -> str:
         return "Sobol()"
 
-    def of_scenes(self, axes: NDArray[np.intp], count: int, lanes: Lanes) -> Floats:
+    def of_scenes(self, axes: NDArray[np.intp], count: int, lanes: LaneOwners) -> Floats:
         """See `PointSet`; scenes have the even dimensions."""
         return self._numbers(2 * ((count + 1) * lanes.attempts + (axes + 1)[:, np.newaxis]), lanes)
 
-    def of_simulations(self, draws: NDArray[np.intp], count: int, lanes: Lanes) -> Floats:
+    def of_simulations(self, draws: NDArray[np.intp], count: int, lanes: LaneOwners) -> Floats:
         """See `PointSet`; simulations have the odd dimensions."""
         places = np.where(draws < _DRAWS, draws, _DIMENSIONS)[:, np.newaxis]
         return self._numbers(2 * (_DRAWS * lanes.attempts + places) + 1, lanes)
 
-    def _numbers(self, dimensions: NDArray[np.intp], lanes: Lanes) -> Floats:
+    def _numbers(self, dimensions: NDArray[np.intp], lanes: LaneOwners) -> Floats:
         """The numbers of dimensions ``(m, n)``."""
         has_directions = dimensions < _DIMENSIONS
         dimensions = np.where(has_directions, dimensions, 0)
@@ -167,15 +167,15 @@ class GivenPoints:
     def __repr__(self) -> str:
         return f"GivenPoints({len(self)} rows of {self._width})"
 
-    def of_scenes(self, axes: NDArray[np.intp], count: int, lanes: Lanes) -> Floats:
+    def of_scenes(self, axes: NDArray[np.intp], count: int, lanes: LaneOwners) -> Floats:
         """See `PointSet`; ``IndexError`` for a scene without a row."""
         return self._numbers(np.where(axes < count, axes, -1), lanes)
 
-    def of_simulations(self, draws: NDArray[np.intp], count: int, lanes: Lanes) -> Floats:
+    def of_simulations(self, draws: NDArray[np.intp], count: int, lanes: LaneOwners) -> Floats:
         """See `PointSet`; ``IndexError`` for a scene without a row."""
         return self._numbers(draws + count, lanes)
 
-    def _numbers(self, columns: NDArray[np.intp], lanes: Lanes) -> Floats:
+    def _numbers(self, columns: NDArray[np.intp], lanes: LaneOwners) -> Floats:
         if len(lanes.scenes) and int(lanes.scenes.max()) >= len(self):
             raise IndexError(
                 f"there is no row for scene {int(lanes.scenes.max())}: {len(self)} rows are given"

@@ -13,7 +13,7 @@ from scenic.compiler import tree as scenic
 from scenic.compiler.generated import WORDS
 from scenic.compiler.loader import SUFFIXES
 from scenic.compiler.scopes import Binding, BindingKind, ScopeKind
-from scenic.compiler.semantics.classes import Class, Classes, Member
+from scenic.compiler.semantics.classes import Class, Classes, ClassMember
 from scenic.compiler.semantics.model import Model
 from scenic.compiler.semantics.modules import Exported, FoundModule, Module, ModuleKind
 from scenic.compiler.semantics.symbols import Symbol, SymbolKind, symbol_of_binding, symbol_of_exported
@@ -541,7 +541,7 @@ def _inherited(project: Project, snapshot: Snapshot, line: int, column: int) -> 
     scope = snapshot.scope_at(line, column)
     body = getattr(scope.node, "body", ()) if scope.kind is ScopeKind.CLASS else ()
     own_names = {each.name for each in body if isinstance(each, scenic.PropertyDef)}
-    members_by_name: dict[str, Member] = {}
+    members_by_name: dict[str, ClassMember] = {}
     for base in (header["bases"] or "Object").split(","):
         base_expression = expression(project, snapshot, base.strip(), line, column)
         cls = (
@@ -557,7 +557,7 @@ def _inherited(project: Project, snapshot: Snapshot, line: int, column: int) -> 
         yield _property(snapshot, member, f"{member.name}:", after=" ")
 
 
-def _property(snapshot: Snapshot, member: Member, text: str, *, after: str = "") -> Completion:
+def _property(snapshot: Snapshot, member: ClassMember, text: str, *, after: str = "") -> Completion:
     """Return a property that is given a value: ``text``, then the value; ``after`` is what a client without snippets adds."""
     own = member.symbol is not None
     key = ("member", snapshot.filename, member.owner, member.name) if own else ("property", member.name)

@@ -9,11 +9,11 @@ from scenic.ide.places import name_span
 from scenic.ide.snapshot import Snapshot
 from scenic.language.spans import Span
 
-__all__ = ["Lens", "lenses"]
+__all__ = ["CodeLens", "lenses"]
 
 
 @dataclass(frozen=True, slots=True)
-class Lens:
+class CodeLens:
     """Something that can be run; ``scenario`` is the name of one of several, ``simulates`` if it changes over time."""
 
     span: Span
@@ -21,12 +21,12 @@ class Lens:
     simulates: bool
 
 
-def lenses(snapshot: Snapshot) -> tuple[Lens, ...]:
+def lenses(snapshot: Snapshot) -> tuple[CodeLens, ...]:
     """Return the commands of a document; none in a text that makes no objects."""
     return snapshot.derived("lenses", lambda: tuple(_find(snapshot)))
 
 
-def _find(snapshot: Snapshot) -> Iterator[Lens]:
+def _find(snapshot: Snapshot) -> Iterator[CodeLens]:
     tree = snapshot.tree
     scenarios = [node for node in tree.body if isinstance(node, scenic.ScenarioDef)]
     if not scenarios and not any(isinstance(node, scenic.New | scenic.Model) for node in walk(tree)):
@@ -40,6 +40,6 @@ def _find(snapshot: Snapshot) -> Iterator[Lens]:
     if not scenarios:
         first = next((each for each in tree.body if not scenic.is_documentation(each)), None)
         line = 1 if first is None else first.lineno
-        yield Lens(Span(line, 0, line, len(snapshot.source.line(line))), None, dynamic)
+        yield CodeLens(Span(line, 0, line, len(snapshot.source.line(line))), None, dynamic)
     for node in scenarios:
-        yield Lens(name_span(snapshot, node), node.name, dynamic)
+        yield CodeLens(name_span(snapshot, node), node.name, dynamic)

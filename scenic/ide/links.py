@@ -14,27 +14,27 @@ from scenic.language.spans import Span
 from scenic.project.index import Project
 from scenic.project.queries import occurrences, symbol_of
 
-__all__ = ["Link", "links"]
+__all__ = ["FileLink", "links"]
 
 _FILES: Final = frozenset({"localPath", "fromFile", "open", "Path"})
 """Functions and methods whose first argument names a file."""
 
 
 @dataclass(frozen=True, slots=True)
-class Link:
+class FileLink:
     """A name of a file in the text, and the file that it means."""
 
     span: Span
     path: str
 
 
-def links(project: Project, snapshot: Snapshot) -> tuple[Link, ...]:
+def links(project: Project, snapshot: Snapshot) -> tuple[FileLink, ...]:
     """Return the files that a document names, in order of place, as far as they exist. Runs nothing to find them."""
     folder = os.path.dirname(snapshot.filename)
     if not os.path.isabs(snapshot.filename):
         return ()
     file_links = [
-        Link(span, path)
+        FileLink(span, path)
         for span, name in _names(snapshot)
         if os.path.exists(path := os.path.normpath(os.path.join(folder, name)))
     ]
@@ -42,7 +42,7 @@ def links(project: Project, snapshot: Snapshot) -> tuple[Link, ...]:
     return tuple(sorted(file_links, key=lambda link: link.span))
 
 
-def _modules(project: Project, snapshot: Snapshot) -> Iterator[Link]:
+def _modules(project: Project, snapshot: Snapshot) -> Iterator[FileLink]:
     """Yield the modules that are imported: each word of a dotted name leads to its own part of it."""
     module = project.module(snapshot.filename)
     model = None if module is None else Model(module, project)
@@ -51,7 +51,7 @@ def _modules(project: Project, snapshot: Snapshot) -> Iterator[Link]:
             continue
         symbol = symbol_of(model, each)
         if symbol is not None and symbol.filename is not None and os.path.isfile(symbol.filename):
-            yield Link(each.span, symbol.filename)
+            yield FileLink(each.span, symbol.filename)
 
 
 def _names(snapshot: Snapshot) -> Iterator[tuple[Span, str]]:

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from scenic.compiler.semantics.classes import Member
+from scenic.compiler.semantics.classes import ClassMember
 from scenic.compiler.semantics.symbols import Symbol, SymbolKind, symbol_of_exported
 from scenic.ide.expressions import expression, operand_before
 from scenic.ide.parameters import settings
@@ -56,7 +56,7 @@ def members(
             yield Completion(name, completion_kind, name, 3, of_kind)
 
 
-def _of_class(snapshot: Snapshot, member: Member) -> Completion:
+def _of_class(snapshot: Snapshot, member: ClassMember) -> Completion:
     kind = {
         SymbolKind.PROPERTY: CompletionKind.PROPERTY,
         SymbolKind.METHOD: CompletionKind.METHOD,

@@ -13,7 +13,7 @@ from scenic.language.properties import CLASSES
 from scenic.language.source import Source, read_source
 from scenic.migration.moved import MOVED_MODULES
 from scenic.migration.texts import Token, tokens_of
-from scenic.project.module_search import Finder
+from scenic.project.module_search import ModuleFinder
 
 __all__ = ["ClassInfo", "Library", "ModuleNames", "definitions"]
 
@@ -117,7 +117,7 @@ class Library:
     """Reads the modules that programs import, each once; ``roots`` are the folders of the project."""
 
     def __init__(self, roots: Sequence[str] = ()) -> None:
-        self.finder = Finder(roots)
+        self.finder = ModuleFinder(roots)
         self._known: dict[str, ModuleNames] = {}
         self._pending: set[str] = set()
 

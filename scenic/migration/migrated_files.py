@@ -17,13 +17,13 @@ from scenic.migration.embedded import convert_embedded
 from scenic.migration.migration_rules import Note
 from scenic.migration.python_names import old_names
 
-__all__ = ["File", "convert_files", "convert_text", "write_file"]
+__all__ = ["MigratedFile", "convert_files", "convert_text", "write_file"]
 
 _PROGRAMS = (".scenic", ".sc")
 
 
 @dataclass(frozen=True, slots=True)
-class File:
+class MigratedFile:
     """A file and its conversion.
 
     ``before`` and ``after`` are its texts, with their line ends; both are empty if it could not be read. A ``problem``
@@ -42,7 +42,9 @@ class File:
         return self.before != self.after
 
 
-def convert_files(names: Sequence[str], roots: Sequence[str] = (), *, flat: bool = False) -> list[File]:
+def convert_files(
+    names: Sequence[str], roots: Sequence[str] = (), *, flat: bool = False
+) -> list[MigratedFile]:
     """Convert files; programs that one of Scenic 2 imports are taken for Scenic 2, too. Nothing is written.
 
     Files with other endings than those of programs are searched for programs in their strings.
@@ -50,14 +52,14 @@ def convert_files(names: Sequence[str], roots: Sequence[str] = (), *, flat: bool
     converter = Converter(tuple(roots), flat=flat)
     texts: dict[str, str | Diagnostic] = {name: _read(name) for name in names}
     old: set[str] = set()
-    files: dict[str, File] = {}
+    files: dict[str, MigratedFile] = {}
     waiting = [(name, False) for name in names]
     by_path = {os.path.abspath(name): name for name in names}
     while waiting:
         name, is_old = waiting.pop(0)
         text = texts[name]
         if isinstance(text, Diagnostic):
-            files[name] = File(name, problem=text)
+            files[name] = MigratedFile(name, problem=text)
             continue
         if not name.endswith(_PROGRAMS) and name.endswith((".py", ".json", ".jsonl", ".md", ".markdown")):
             files[name] = _embedding(name, text, converter)
@@ -71,28 +73,30 @@ def convert_files(names: Sequence[str], roots: Sequence[str] = (), *, flat: bool
     return [files[name] for name in names]
 
 
-def convert_text(text: str, name: str, *, flat: bool = False) -> File:
+def convert_text(text: str, name: str, *, flat: bool = False) -> MigratedFile:
     """Convert a program that is not in a file."""
     converted = Converter(flat=flat).convert(text, name)
     return _file(name, text, converted.text, converted.notes, converted.problem)
 
 
-def _file(name: str, before: str, after: str, notes: tuple[Note, ...], problem: Diagnostic | None) -> File:
+def _file(
+    name: str, before: str, after: str, notes: tuple[Note, ...], problem: Diagnostic | None
+) -> MigratedFile:
     if problem is not None:
         problem = replace(
             problem,
             filename=name,
             message=f"the program is left as it is: {problem.message}",
         )
-    return File(name, before, after, notes, problem)
+    return MigratedFile(name, before, after, notes, problem)
 
 
-def _embedding(name: str, text: str, converter: Converter) -> File:
+def _embedding(name: str, text: str, converter: Converter) -> MigratedFile:
     # A program in a string has no neighbours but those of the file that contains it.
     after, notes = convert_embedded(text, name, partial(converter.convert, filename=name))
     if name.endswith(".py"):
         notes = (*notes, *old_names(text))
-    return File(name, text, after, tuple(sorted(notes)))
+    return MigratedFile(name, text, after, tuple(sorted(notes)))
 
 
 def _read(name: str) -> str | Diagnostic:
@@ -105,7 +109,7 @@ def _read(name: str) -> str | Diagnostic:
         return Diagnostic("SC600", f"the file cannot be read: {error}", filename=name)
 
 
-def write_file(file: File) -> Diagnostic | None:
+def write_file(file: MigratedFile) -> Diagnostic | None:
     """Write the converted text into the file; return the reason if it is left as it was."""
     path = Path(file.name)
     try:
@@ -127,11 +131,11 @@ def write_file(file: File) -> Diagnostic | None:
     return None
 
 
-def _left(file: File, code: str, reason: str, help_: str) -> Diagnostic:
+def _left(file: MigratedFile, code: str, reason: str, help_: str) -> Diagnostic:
     return Diagnostic(code, f"the file is left as it is: {reason}", filename=file.name, help=help_)
 
 
-def lines_of(file: File) -> tuple[list[str], list[str]]:
+def lines_of(file: MigratedFile) -> tuple[list[str], list[str]]:
     """Return the lines of both texts, for a comparison."""
     return (
         Source(file.before, file.name).text.splitlines(keepends=True),

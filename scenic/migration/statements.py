@@ -12,14 +12,14 @@ from scenic.migration.moved import LOST_CLASSES, MAP_LOADERS, MAP_LOADING, MOVED
 from scenic.migration.moved_files import SUFFIXES
 from scenic.migration.pieces import TextPiece
 from scenic.migration.texts import TextEdit
-from scenic.project.module_search import Finder
+from scenic.project.module_search import ModuleFinder
 
 __all__ = ["rewrite_statements"]
 
 _NESTED: Final = (ast.FunctionDef, scenic.BehaviorDef, scenic.MonitorDef, scenic.ScenarioDef, ast.ClassDef)
 
 
-def rewrite_statements(piece: TextPiece, finder: Finder) -> None:
+def rewrite_statements(piece: TextPiece, finder: ModuleFinder) -> None:
     """Apply the rules about statements."""
     _monitors(piece)
     _loaded_maps(piece)
@@ -141,7 +141,7 @@ def _temporal(piece: TextPiece) -> None:
             piece.decide("temporal-mixture", node)
 
 
-def _modules(piece: TextPiece, finder: Finder) -> None:
+def _modules(piece: TextPiece, finder: ModuleFinder) -> None:
     """Modules that have moved, or are Python today."""
     for node in piece.of(scenic.Model, ast.ImportFrom, ast.Import):
         match node:

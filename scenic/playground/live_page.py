@@ -18,14 +18,14 @@ from typing import Any, Final
 from scenic.dataclass import dataclass
 from scenic.ide.running import RunError, analysis_text, sample_page
 
-__all__ = ["View", "Watch", "served"]
+__all__ = ["PageState", "WatchedProgram", "served"]
 
 _INTERVAL: Final = 0.3
 """Seconds between two looks at the files."""
 
 
 @dataclass(frozen=True, slots=True)
-class View:
+class PageState:
     """State of the page besides the scenes; ``version`` grows whenever a part of it changes."""
 
     program: str
@@ -36,7 +36,7 @@ class View:
     report: str = ""
 
 
-class Watch:
+class WatchedProgram:
     """Follows a program, and samples it again when it or a module beside it is saved.
 
     Args:
@@ -52,7 +52,7 @@ class Watch:
         self._seen = self._stamp()
         self._wanted = threading.Event()
         self._ended = threading.Event()
-        self.view = View(path.name, seed=seed)
+        self.view = PageState(path.name, seed=seed)
         self.page = ""
 
     def _stamp(self) -> tuple[tuple[str, int], ...]:
@@ -113,11 +113,11 @@ class Watch:
             raise RunError("ended")
 
     def _set(self, **changes: Any) -> None:
-        self.view = View(**{**asdict(self.view), **changes, "version": self.view.version + 1})
+        self.view = PageState(**{**asdict(self.view), **changes, "version": self.view.version + 1})
 
 
 @contextmanager
-def served(watch: Watch, port: int = 0) -> Iterator[str]:
+def served(watch: WatchedProgram, port: int = 0) -> Iterator[str]:
     """Serve the page of a watch, and follow its program, while the context lasts; gives the address."""
     secret = secrets.token_urlsafe(16)
     server = ThreadingHTTPServer(("127.0.0.1", port), _handler(watch, f"/{secret}/"))
@@ -136,7 +136,7 @@ def served(watch: Watch, port: int = 0) -> Iterator[str]:
         threads[1].join()
 
 
-def _handler(watch: Watch, root: str) -> type[BaseHTTPRequestHandler]:
+def _handler(watch: WatchedProgram, root: str) -> type[BaseHTTPRequestHandler]:
     frame = resources.files("scenic.playground").joinpath("watch.html").read_text(encoding="utf-8")
 
     class Handler(BaseHTTPRequestHandler):

@@ -20,7 +20,7 @@ from scenic.compiler.semantics.modules import Exported, Exports, FoundModule, Mo
 from scenic.dataclass import dataclass
 from scenic.language.errors import ScenicError
 from scenic.language.source import Source, read_source
-from scenic.project.module_search import Finder
+from scenic.project.module_search import ModuleFinder
 from scenic.project.modules import read_module
 
 __all__ = ["Project"]
@@ -70,7 +70,7 @@ class Project:
         *,
         interpreter_path: Sequence[str] | None = None,
     ) -> None:
-        self.finder = Finder(roots, python_path, interpreter_path)
+        self.finder = ModuleFinder(roots, python_path, interpreter_path)
         self._entries: dict[str, _Entry] = {}
         self._opened: dict[str, Module] = {}
         self._exports: dict[str, Exports] = {}

@@ -1,7 +1,7 @@
 """Search for the modules of a program: the rules of ``import`` and ``model``, applied to file names only.
 
 A Scenic module anywhere on the search path wins over a Python module, as when a program runs. Folders are listed once
-and remembered until `Finder.forget`.
+and remembered until `ModuleFinder.forget`.
 """
 
 import os
@@ -17,7 +17,7 @@ from scenic.compiler.loader import SUFFIXES
 from scenic.compiler.semantics.modules import FoundModule, ModuleKind
 from scenic.language.spelling import nearest
 
-__all__ = ["Finder"]
+__all__ = ["ModuleFinder"]
 
 _INITIAL: Final = (*SUFFIXES, ".py")
 """The endings of ``__init__`` in packages."""
@@ -26,7 +26,7 @@ _LIBRARY: Final = str(Path(language.__path__[0]).parent.parent)
 """The folder that holds the package ``scenic`` itself, and with it our own library."""
 
 
-class Finder:
+class ModuleFinder:
     """Finds modules. ``roots`` are the folders of the workspace, ``python_path`` those that the project's settings name.
 
     A program finds the modules beside it, and those in the folders above it up to the innermost root, or farther as long as

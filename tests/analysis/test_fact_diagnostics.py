@@ -14,7 +14,7 @@ from scenic.deep.findings import deep_check
 from scenic.graph import node as graph
 from scenic.graph.kinds import Kind
 from scenic.graph.node import Graph
-from scenic.graph.operations.distributions import Table
+from scenic.graph.operations.distributions import LookupTable
 from scenic.language.diagnostics import Severity
 from scenic.language.spans import Span
 
@@ -86,7 +86,7 @@ def test_each_choice_is_told_by_its_own_options(columns):
     draws, chosen = [], []
     for place, (pair, column) in enumerate(zip(options, columns, strict=True)):
         index = make("choice", graph.axis(), payload=(0.5, 1.0), span=line(place + 1))
-        table = Table(Kind.SCALAR, np.array(pair, dtype=float))
+        table = LookupTable(Kind.SCALAR, np.array(pair, dtype=float))
         chosen.append(make("look-up", index, payload=table) if column else make("select", index, *pair))
         draws.append(index)
     values, places = (make("add", make("add", *parts[:2]), parts[2]) for parts in (chosen, draws))
@@ -99,7 +99,7 @@ def test_each_choice_is_told_by_its_own_options(columns):
 
 def test_options_that_are_vectors_are_not_told():
     index = make("choice", graph.axis(), payload=(0.5, 1.0), span=line(1))
-    table = Table(Kind.VECTOR, np.array([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]))
+    table = LookupTable(Kind.VECTOR, np.array([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]))
     part = make("component", make("look-up", index, payload=table), payload=0)
     (found,) = report((make("and", make("greater", part, -9), make("greater", index, 3)), line(2)))
     assert told(found) == ("SC700", 2, [(1, "this choice takes one of its options")])
@@ -228,7 +228,7 @@ def test_options_are_told_with_all_their_digits(options):
     draws = [make("choice", graph.axis(), payload=(0.5, 1.0), span=line(1)) for _ in range(2)]
     chosen = make("select", draws[0], *options)
     column = np.array(options, dtype=np.float64)
-    looked_up = make("look-up", draws[1], payload=Table(Kind.SCALAR, column))
+    looked_up = make("look-up", draws[1], payload=LookupTable(Kind.SCALAR, column))
     for draw, value in zip(draws, (chosen, looked_up), strict=True):
         both = make("and", make("greater", value, -(10**12)), make("greater", draw, 3))
         (found,) = report((both, line(2)))

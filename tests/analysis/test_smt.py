@@ -13,7 +13,7 @@ from scenic.analysis import solver_terms as terms_module
 from scenic.analysis.contraction import contract
 from scenic.analysis.facts import Fact
 from scenic.analysis.smt import judge
-from scenic.analysis.solver_terms import Answer, Questions, SolverTerms
+from scenic.analysis.solver_terms import Questions, SolverAnswer, SolverTerms
 from scenic.graph import construction
 from scenic.graph import node as graph
 from scenic.graph.kinds import Kind
@@ -200,7 +200,7 @@ def test_a_hard_question_is_given_up_by_count():
     one = terms.real(1)
     sums = x * x * x + y * y * y + z * z * z == terms.real(114)
     questions = Questions(terms, [(x > one) | (x < -one)], [sums])
-    assert questions.ask([0]) is not Answer.IMPOSSIBLE
+    assert questions.ask([0]) is not SolverAnswer.IMPOSSIBLE
 
 
 def test_the_last_of_a_contradiction_is_left_out_of_what_follows():
@@ -266,12 +266,14 @@ def test_what_is_not_decided_takes_nothing_away(monkeypatch):
     questions = Questions(terms, [], [x > terms.real(2), x < terms.real(5), x < terms.real(1)])
     real = Questions.ask
     monkeypatch.setattr(
-        Questions, "ask", lambda self, members: real(self, members) if len(members) == 3 else Answer.UNKNOWN
+        Questions,
+        "ask",
+        lambda self, members: real(self, members) if len(members) == 3 else SolverAnswer.UNKNOWN,
     )
     core = questions.contradiction([0, 1, 2])
     monkeypatch.undo()
     assert core is not None
-    assert questions.ask(core) is Answer.IMPOSSIBLE
+    assert questions.ask(core) is SolverAnswer.IMPOSSIBLE
 
 
 @pytest.mark.parametrize(

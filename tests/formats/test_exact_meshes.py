@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from scenic.formats.glb import _Buffers, glb
-from scenic.formats.mesh_instances import Gallery, Surface, picture, surface_of
+from scenic.formats.mesh_instances import Gallery, MeshSurface, picture, surface_of
 from scenic.formats.obj import obj
 from tests.formats.stand_ins import BALL, Chair, Mesh, Object, Scene, Shape, Source, Turn
 
@@ -149,7 +149,7 @@ def test_indices_take_two_bytes_as_long_as_none_is_the_last_number(count: int) -
     vertices = rng.random((count, 3)) - 0.5
     faces = np.arange(3 * (count // 3)).reshape(-1, 3)
     faces = np.concatenate([faces, [[0, 1, count - 1]]])
-    loose = Surface(vertices, np.tile([0.0, 0.0, 1.0], (count, 1)), faces)
+    loose = MeshSurface(vertices, np.tile([0.0, 0.0, 1.0], (count, 1)), faces)
     buffers = _Buffers()
     ((_, primitive),) = buffers.surface(loose)
     accessor = buffers.accessors[primitive["indices"]]

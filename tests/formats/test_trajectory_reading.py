@@ -14,7 +14,7 @@ import pytest
 import scenic
 from scenic.formats import trajectory_tables
 from scenic.formats.trajectories import LinesFile, TrajectoryFile, course_document, step_document
-from scenic.formats.trajectory_reading import Trajectory, TrajectoryFileError
+from scenic.formats.trajectory_reading import TrajectoryArrays, TrajectoryFileError
 from scenic.formats.trajectory_tables import ParquetFile, parquet_steps
 from scenic.language.errors import MissingFileError
 from scenic.runtime.dynamics.requirements import RequirementOutcome
@@ -225,7 +225,7 @@ def test_a_document_holds_what_the_simulation_did() -> None:
     done.result.requirements = (RequirementOutcome("late", None, None, None),)
     (late,) = course_document(done, k=4, tries=2)["requirements"]
     assert late == {"label": "late", "line": None, "verdict": None, "robustness": None}
-    read = Trajectory(about, *(np.empty(0),) * 3, [])
+    read = TrajectoryArrays(about, *(np.empty(0),) * 3, [])
     assert read.record("rows") == [[1, 2, 3], [4, 5, 6]]
 
 

@@ -14,7 +14,7 @@ from scenic.graph.kinds import Kind
 from scenic.graph.node import Graph, Node
 from scenic.graph.operation import OK, Operation, always
 from scenic.graph.operations import TABLE
-from scenic.graph.operations.distributions import Table
+from scenic.graph.operations.distributions import LookupTable
 from scenic.graph.schedule import Scheduler
 
 
@@ -168,10 +168,10 @@ class Case:
 _BINARY = [(S, S), (I, S), (S, I), (I, I), (B, I), (B, S), (B, B), (S, B), (I, B)]
 _UNARY = [(S,), (I,), (B,)]
 _TABLES = (
-    Table(Kind.SCALAR, np.array([2.5, -1.0, 2.5])),
-    Table(Kind.INTEGER, np.array([4, -7, 0])),
-    Table(Kind.BOOLEAN, np.array([True, False, False])),
-    Table(Kind.VECTOR, np.array([[1.0, 2.0, 3.0], [0.0, -1.0, 5.0], [1.0, 2.0, -0.5]])),
+    LookupTable(Kind.SCALAR, np.array([2.5, -1.0, 2.5])),
+    LookupTable(Kind.INTEGER, np.array([4, -7, 0])),
+    LookupTable(Kind.BOOLEAN, np.array([True, False, False])),
+    LookupTable(Kind.VECTOR, np.array([[1.0, 2.0, 3.0], [0.0, -1.0, 5.0], [1.0, 2.0, -0.5]])),
 )
 _CUMULATIVE = (0.25, 0.25, 0.5, 1.0, 1.0)
 

@@ -17,7 +17,7 @@ from scenic.graph import node as graph
 from scenic.graph.bounds import Bounds
 from scenic.graph.kinds import Kind
 from scenic.graph.node import Graph
-from scenic.graph.operations.distributions import Table
+from scenic.graph.operations.distributions import LookupTable
 from scenic.graph.operations.normal_law import conditioned_cumulative, conditioned_quantile
 from tests.each import each
 
@@ -414,7 +414,7 @@ def test_inverses_of_windows_of_any_width_keep_what_was_drawn(centre):
 def test_tables_are_equal_only_if_their_values_are_of_one_kind():
     """Zeros look alike in every kind: whole, broken, or false."""
     tables = [
-        Table(kind, np.array(values, dtype=kind.dtype))
+        LookupTable(kind, np.array(values, dtype=kind.dtype))
         for kind, values in (
             (Kind.INTEGER, [0, 0]),
             (Kind.SCALAR, [0.0, 0.0]),
@@ -423,4 +423,4 @@ def test_tables_are_equal_only_if_their_values_are_of_one_kind():
         )
     ]
     assert len(set(tables)) == len(tables)
-    assert Table(Kind.INTEGER, np.array([0, 0])) == tables[0]
+    assert LookupTable(Kind.INTEGER, np.array([0, 0])) == tables[0]

@@ -5,16 +5,16 @@ import pytest
 from numpy.typing import NDArray
 from scipy.stats import chisquare, kstest, qmc
 
-from scenic.graph.draws import Lanes
+from scenic.graph.draws import LaneOwners
 from scenic.graph.points import GivenPoints, Sobol
 
 FALSE_ALARM = 1e-6
 
 
-def lanes(count: int, *, seed: int = 0, first: int = 0, attempt: int = 0) -> Lanes:
-    parts = [Lanes.of(seed, first + k, attempt) for k in range(count)]
+def lanes(count: int, *, seed: int = 0, first: int = 0, attempt: int = 0) -> LaneOwners:
+    parts = [LaneOwners.of(seed, first + k, attempt) for k in range(count)]
     columns = ("seeds", "scenes", "attempts", "keys")
-    return Lanes(*(np.concatenate([getattr(part, name) for part in parts]) for name in columns))
+    return LaneOwners(*(np.concatenate([getattr(part, name) for part in parts]) for name in columns))
 
 
 def rows(count: int, dimensions: int, **options: int) -> NDArray[np.float64]:

@@ -19,8 +19,8 @@ from graph.programs import (
     random_bounds,
     source,
 )
-from scenic.analysis.smt import Encoding
-from scenic.analysis.solver_terms import Answer, Questions, SolverTerms
+from scenic.analysis.smt import SolverEncoding
+from scenic.analysis.solver_terms import Questions, SolverAnswer, SolverTerms
 from scenic.graph import bounding
 from scenic.graph.bounds import Bounds
 from scenic.graph.construction import make_node
@@ -229,15 +229,15 @@ def test_terms_agree_with_numpy(case):
             continue
         value = batch.full(node)[0]
         fixed = [fixed_node(part, column) for part, column in zip(case.operands, columns, strict=True)]
-        encoding = Encoding([replace(node, operands=tuple(fixed))])
+        encoding = SolverEncoding([replace(node, operands=tuple(fixed))])
         terms = encoding.terms
         term = encoding.term(encoding.nodes[-1])
         close = matches(terms, term, value)
         supports = [fact for fact, _ in encoding.supports]
         questions = Questions(terms, [*terms.definitions, *supports], [close, ~close])
-        assert questions.ask([0]) is Answer.POSSIBLE
+        assert questions.ask([0]) is SolverAnswer.POSSIBLE
         if case.name in EXACT and case.operands != (Kind.ORIENTATION, Kind.ORIENTATION):
-            assert questions.ask([1]) is Answer.IMPOSSIBLE
+            assert questions.ask([1]) is SolverAnswer.IMPOSSIBLE
 
 
 def fixed_node(part, column):
@@ -273,9 +273,9 @@ def test_unknown_readings_say_nothing():
     node = make_node(mystery, [source(S, [1.0])])
     known = bounding.forward(node, [Bounds.exactly(1.0)])
     assert (known.lower[0], known.upper[0]) == (0, 1)
-    encoding = Encoding([node])
+    encoding = SolverEncoding([node])
     questions = Questions(encoding.terms, [], [encoding.truth(node), ~encoding.truth(node)])
-    assert questions.ask([0]) is questions.ask([1]) is Answer.POSSIBLE
+    assert questions.ask([0]) is questions.ask([1]) is SolverAnswer.POSSIBLE
 
 
 UNDEFINED = {

@@ -5,7 +5,16 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from scenic.graph.draws import BOX, Counter, Lanes, Points, Source, box_addresses, open_unit, words_of
+from scenic.graph.draws import (
+    BOX,
+    Counter,
+    LaneOwners,
+    NumberSource,
+    Points,
+    box_addresses,
+    open_unit,
+    words_of,
+)
 from scenic.graph.node import Graph, axis
 from scenic.graph.points import GivenPoints, PointSet, Sobol
 from scenic.runtime.sampling.point_set_draws import driven
@@ -18,11 +27,11 @@ ADDRESSES = np.array([*OWN, 99, 5], dtype=np.uint64)
 """Those of the graph, and two that are not in it."""
 
 
-def lanes() -> Lanes:
+def lanes() -> LaneOwners:
     """Lanes of two seeds, of scenes and attempts that are not in order."""
-    parts = [Lanes.of(number % 2, 3 + 5 * number % 7, number // 3) for number in range(COUNT)]
+    parts = [LaneOwners.of(number % 2, 3 + 5 * number % 7, number // 3) for number in range(COUNT)]
     columns = ("seeds", "scenes", "attempts", "keys")
-    return Lanes(*(np.concatenate([getattr(part, name) for part in parts]) for name in columns))
+    return LaneOwners(*(np.concatenate([getattr(part, name) for part in parts]) for name in columns))
 
 
 def given() -> Points:
@@ -31,11 +40,11 @@ def given() -> Points:
     return Points({int(OWN[1]): rng.random(COUNT), 5: rng.random(COUNT)}, Counter(lanes().keys), words)
 
 
-def of_points(points: PointSet) -> Callable[[], Source]:
+def of_points(points: PointSet) -> Callable[[], NumberSource]:
     return lambda: driven(points, GRAPH)(lanes())
 
 
-SOURCES: dict[str, Callable[[], Source]] = {
+SOURCES: dict[str, Callable[[], NumberSource]] = {
     "hash": lambda: Counter(lanes().keys),
     "points": given,
     "Sobol": of_points(Sobol()),

@@ -12,7 +12,7 @@ import pytest
 
 from scenic.ide.running import RunError
 from scenic.playground import live_page
-from scenic.playground.live_page import Watch, served
+from scenic.playground.live_page import WatchedProgram, served
 
 
 def fetched(address: str, *, post: bool = False) -> str:
@@ -41,7 +41,7 @@ def test_scenes_and_report_follow_the_program(tmp_path: Path, monkeypatch: pytes
     monkeypatch.setattr(live_page, "analysis_text", lambda filename, go_on: "what it costs")
     program = tmp_path / "room.scenic"
     program.write_text("first")
-    with served(Watch(program, count=3)) as address:
+    with served(WatchedProgram(program, count=3)) as address:
         first = settled(address, 0)
         assert (first["problem"], first["report"], first["program"]) == ("", "what it costs", "room.scenic")
         assert fetched(f"{address}scenes") == "first of seed 0, 3 scenes"
@@ -64,7 +64,7 @@ def test_scenes_and_report_follow_the_program(tmp_path: Path, monkeypatch: pytes
 def test_a_real_program_is_run(tmp_path: Path) -> None:
     program = tmp_path / "room.scenic"
     program.write_text("ego = new Object at (Range(0, 1), 0)\nrequire ego.position.x ** 2 > 0.5\n")
-    watch = Watch(program, count=2)
+    watch = WatchedProgram(program, count=2)
     watch.refresh()
     assert watch.view.problem == ""
     assert "<title>room.scenic</title>" in watch.page

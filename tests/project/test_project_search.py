@@ -3,12 +3,12 @@ from pathlib import Path
 import pytest
 
 from scenic.compiler.semantics.modules import ModuleKind
-from scenic.project.module_search import Finder
+from scenic.project.module_search import ModuleFinder
 from tests.project.layouts import write
 
 
 @pytest.fixture
-def finder(tmp_path: Path) -> Finder:
+def finder(tmp_path: Path) -> ModuleFinder:
     write(
         tmp_path,
         {
@@ -28,7 +28,7 @@ def finder(tmp_path: Path) -> Finder:
             "hidden-name/x.scenic": "",
         },
     )
-    return Finder([str(tmp_path)], [str(tmp_path / "elsewhere")], ())
+    return ModuleFinder([str(tmp_path)], [str(tmp_path / "elsewhere")], ())
 
 
 @pytest.mark.parametrize(
@@ -48,14 +48,16 @@ def finder(tmp_path: Path) -> Finder:
         ("given", ModuleKind.SCENIC, "elsewhere/given.scenic"),
     ],
 )
-def test_modules_are_found(finder: Finder, tmp_path: Path, name: str, kind: ModuleKind, file: str) -> None:
+def test_modules_are_found(
+    finder: ModuleFinder, tmp_path: Path, name: str, kind: ModuleKind, file: str
+) -> None:
     found = finder.find(name, importer=str(tmp_path / "main.scenic"))
     assert (found.kind, found.filename) == (kind, str(tmp_path / file))
 
 
-def test_modules_of_the_folders_above_are_found_up_to_the_root(finder: Finder, tmp_path: Path) -> None:
+def test_modules_of_the_folders_above_are_found_up_to_the_root(finder: ModuleFinder, tmp_path: Path) -> None:
     assert finder.find("beside", importer=str(tmp_path / "lib" / "inner.scenic")).filename is not None
-    inner = Finder([str(tmp_path / "spaces")], (), ())
+    inner = ModuleFinder([str(tmp_path / "spaces")], (), ())
     assert inner.find("beside", importer=str(tmp_path / "spaces" / "main.scenic")).is_missing
 
 
@@ -65,13 +67,13 @@ def test_modules_of_a_package_find_it(tmp_path: Path, roots: tuple[str, ...]) ->
         tmp_path,
         {"package/__init__.py": "", "package/part.scenic": "", "plain/one.scenic": "", "top.scenic": ""},
     )
-    finder = Finder([str(tmp_path / root) for root in roots], (), ())
+    finder = ModuleFinder([str(tmp_path / root) for root in roots], (), ())
     within = str(tmp_path / "package/main.scenic")
     assert finder.find("package.part", importer=within).filename == str(tmp_path / "package/part.scenic")
     assert finder.find("top", importer=str(tmp_path / "plain/one.scenic")).is_missing
 
 
-def test_dots_lead_to_the_folder_and_those_above(finder: Finder, tmp_path: Path) -> None:
+def test_dots_lead_to_the_folder_and_those_above(finder: ModuleFinder, tmp_path: Path) -> None:
     importer = str(tmp_path / "lib" / "deep" / "far.py")
     assert finder.find("far", importer=importer, level=1).kind is ModuleKind.PYTHON
     assert finder.find("inner", importer=importer, level=2).kind is ModuleKind.SCENIC
@@ -81,7 +83,7 @@ def test_dots_lead_to_the_folder_and_those_above(finder: Finder, tmp_path: Path)
     )
 
 
-def test_what_is_missing_says_where_it_was_looked_for(finder: Finder, tmp_path: Path) -> None:
+def test_what_is_missing_says_where_it_was_looked_for(finder: ModuleFinder, tmp_path: Path) -> None:
     found = finder.find("besides", importer=str(tmp_path / "main.scenic"))
     assert found.is_missing
     assert (found.near, found.found) == ("beside", "")
@@ -91,7 +93,7 @@ def test_what_is_missing_says_where_it_was_looked_for(finder: Finder, tmp_path: 
 
 
 def test_pythons_own_modules_are_found(tmp_path: Path) -> None:
-    finder = Finder([str(tmp_path)])
+    finder = ModuleFinder([str(tmp_path)])
     importer = str(tmp_path / "main.scenic")
     assert finder.find("sys", importer=importer).kind is ModuleKind.COMPILED
     assert finder.find("os.path", importer=importer).kind is ModuleKind.COMPILED
@@ -100,7 +102,7 @@ def test_pythons_own_modules_are_found(tmp_path: Path) -> None:
     assert finder.find("jsn", importer=importer).near == "json"
 
 
-def test_new_files_are_seen_after_forgetting(finder: Finder, tmp_path: Path) -> None:
+def test_new_files_are_seen_after_forgetting(finder: ModuleFinder, tmp_path: Path) -> None:
     importer = str(tmp_path / "main.scenic")
     assert finder.find("fresh", importer=importer).is_missing
     (tmp_path / "fresh.scenic").touch()
@@ -109,7 +111,7 @@ def test_new_files_are_seen_after_forgetting(finder: Finder, tmp_path: Path) -> 
     assert not finder.find("fresh", importer=importer).is_missing
 
 
-def test_what_can_be_imported(finder: Finder, tmp_path: Path) -> None:
+def test_what_can_be_imported(finder: ModuleFinder, tmp_path: Path) -> None:
     assert {
         "beside",
         "both",

@@ -17,7 +17,7 @@ from scenic.analysis.finite.variables import Variable, variables_of
 from scenic.analysis.screening import FREQUENT
 from scenic.dataclass import dataclass
 from scenic.graph.batch import Batch
-from scenic.graph.draws import Source, address
+from scenic.graph.draws import NumberSource, address
 from scenic.graph.finite import Finite
 from scenic.graph.kinds import Kind
 from scenic.graph.node import Graph, Node
@@ -71,7 +71,7 @@ class _Piece:
 
 
 def decide(
-    plan: Plan, batch: Callable[[Source], Batch], met: Mapping[int, Mask], *, always: bool = False
+    plan: Plan, batch: Callable[[NumberSource], Batch], met: Mapping[int, Mask], *, always: bool = False
 ) -> Decision:
     """Decide the finite part of a plan.
 
@@ -198,7 +198,7 @@ class _Builder:
     """Makes constraints of pieces."""
 
     def __init__(
-        self, graph: Graph, variables: Mapping[Node, Variable], batch: Callable[[Source], Batch]
+        self, graph: Graph, variables: Mapping[Node, Variable], batch: Callable[[NumberSource], Batch]
     ) -> None:
         self.order = list(variables.values())
         self.sizes = [variable.size for variable in self.order]

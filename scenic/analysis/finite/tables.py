@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from scenic.analysis.finite.variables import Variable
 from scenic.dataclass import dataclass
 from scenic.graph.batch import Batch
-from scenic.graph.draws import Counter, Points, Source
+from scenic.graph.draws import Counter, NumberSource, Points
 from scenic.graph.node import Graph, Node
 from scenic.language.errors import ScenicError
 from scenic.runtime.python.opaque import OpaqueCode
@@ -69,7 +69,7 @@ class Tabulator:
 
     """
 
-    def __init__(self, variables: Mapping[Node, Variable], batch: Callable[[Source], Batch]) -> None:
+    def __init__(self, variables: Mapping[Node, Variable], batch: Callable[[NumberSource], Batch]) -> None:
         self._variables = variables
         self._batch = batch
         self._known: dict[Hashable, Mask | None] = {}

@@ -8,7 +8,7 @@ from scenic.compiler import tree as scenic
 from scenic.compiler.checks.context import CheckContext, NodeRule
 from scenic.compiler.places import word_span
 from scenic.compiler.scopes import Scope
-from scenic.compiler.semantics.classes import Member
+from scenic.compiler.semantics.classes import ClassMember
 from scenic.language.diagnostics import Diagnostic, Edit, Fix
 from scenic.language.spans import Span
 from scenic.language.spelling import distance
@@ -55,7 +55,7 @@ def _misspelt(
     context: CheckContext,
     node: ast.ClassDef,
     item: scenic.PropertyDef,
-    inherited: Mapping[str, Member],
+    inherited: Mapping[str, ClassMember],
     own: set[str],
 ) -> Iterator[Diagnostic]:
     """SC300: ``lenght: 4``, of which nothing else in the program speaks."""

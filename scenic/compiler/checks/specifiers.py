@@ -9,7 +9,7 @@ from scenic.compiler import tree as scenic
 from scenic.compiler.checks.context import CheckContext, NodeRule
 from scenic.compiler.places import word_span
 from scenic.compiler.scopes import Scope
-from scenic.compiler.semantics.classes import Member, find_cycle
+from scenic.compiler.semantics.classes import ClassMember, find_cycle
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.operators import OPERATORS
 from scenic.language.spans import Span
@@ -127,7 +127,7 @@ def _conflicts(specifiers: list[scenic.SpecifierPhrase], context: CheckContext) 
 
 
 def _finals(
-    node: scenic.New, properties: Mapping[str, Member], context: CheckContext
+    node: scenic.New, properties: Mapping[str, ClassMember], context: CheckContext
 ) -> Iterator[Diagnostic]:
     """SC301: properties that follow from others and cannot be given."""
     for specifier in node.specifiers:
@@ -176,7 +176,9 @@ def _is_vector(node: ast.expr | None) -> bool:
     return isinstance(node, ast.Tuple | ast.List)
 
 
-def _cycle(node: scenic.New, properties: Mapping[str, Member], context: CheckContext) -> Iterator[Diagnostic]:
+def _cycle(
+    node: scenic.New, properties: Mapping[str, ClassMember], context: CheckContext
+) -> Iterator[Diagnostic]:
     """SC308: a value that cannot be computed, because it needs itself in the end."""
     providers: dict[str, Any] = {}
     uncertain: set[str] = set()

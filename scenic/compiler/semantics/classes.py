@@ -17,7 +17,7 @@ from scenic.compiler.traversal import position, walk
 from scenic.dataclass import dataclass
 from scenic.language.properties import CLASSES, BuiltinProperty, attributes_of, properties_of
 
-__all__ = ["LIBRARY", "Class", "Classes", "Member", "find_cycle", "is_of_library"]
+__all__ = ["LIBRARY", "Class", "ClassMember", "Classes", "find_cycle", "is_of_library"]
 
 LIBRARY: Final = os.path.dirname(os.path.dirname(os.path.abspath(language.__file__ or ""))) + os.sep
 """The folder of the package, with a separator at its end."""
@@ -32,7 +32,7 @@ _WITHOUT_MEMBERS: Final = frozenset({"object", "Exception", "ABC"})
 
 
 @dataclass(frozen=True, slots=True)
-class Member:
+class ClassMember:
     """Something that instances of a class have.
 
     ``owner`` is the name of the class that defines it. ``default`` is the text of a property's default or of an
@@ -70,16 +70,16 @@ class Class:
     """
 
     symbol: Symbol
-    members: tuple[Member, ...]
+    members: tuple[ClassMember, ...]
     parents: "tuple[Class, ...]"
     complete: bool
     is_scenic: bool
 
     @cached_property
-    def _by_name(self) -> Mapping[str, Member]:
+    def _by_name(self) -> Mapping[str, ClassMember]:
         return {each.name: each for each in self.members}
 
-    def member(self, name: str) -> Member | None:
+    def member(self, name: str) -> ClassMember | None:
         """The member of a name."""
         return self._by_name.get(name)
 
@@ -95,14 +95,14 @@ class Class:
         return initial is not None and initial.owner == self.symbol.name
 
     @cached_property
-    def properties(self) -> Mapping[str, Member]:
+    def properties(self) -> Mapping[str, ClassMember]:
         """Properties that can be given after ``with``."""
         return {each.name: each for each in self.members if each.kind is SymbolKind.PROPERTY}
 
     @cached_property
-    def inherited(self) -> Mapping[str, Member]:
+    def inherited(self) -> Mapping[str, ClassMember]:
         """The properties that it has from its parents."""
-        inherited: dict[str, Member] = {}
+        inherited: dict[str, ClassMember] = {}
         for parent in reversed(self.parents):
             inherited.update(parent.properties)
         return inherited
@@ -252,7 +252,7 @@ class Classes:
                 complete = complete and self.names(module).stays(base)
             elif not (isinstance(base, ast.Name) and base.id in _WITHOUT_MEMBERS):
                 complete = False
-        members: dict[str, Member] = {}
+        members: dict[str, ClassMember] = {}
         for member in _own(module, symbol, node):
             members.setdefault(member.name, member)
         for parent in parents:
@@ -308,7 +308,7 @@ def _built_in(name: str) -> Class:
     """Return a class of objects of the language."""
     members = [_declared(each, name) for each in properties_of(name).values()]
     members += [
-        Member(
+        ClassMember(
             each.name,
             SymbolKind.METHOD if each.is_method else SymbolKind.ATTRIBUTE,
             name,
@@ -322,9 +322,9 @@ def _built_in(name: str) -> Class:
     return Class(Symbol(name, SymbolKind.CLASS), tuple(members), parents, True, True)
 
 
-def _declared(each: BuiltinProperty, owner: str) -> Member:
+def _declared(each: BuiltinProperty, owner: str) -> ClassMember:
     attributes = tuple(name for name in ("additive", "dynamic", "final") if getattr(each, name))
-    return Member(
+    return ClassMember(
         each.name,
         SymbolKind.PROPERTY,
         owner,
@@ -339,7 +339,7 @@ def _declared(each: BuiltinProperty, owner: str) -> Member:
 _BUILT_IN: Final = MappingProxyType({name: _built_in(name) for name in CLASSES})
 
 
-def _own(module: Module, symbol: Symbol, node: ast.ClassDef) -> Iterator[Member]:
+def _own(module: Module, symbol: Symbol, node: ast.ClassDef) -> Iterator[ClassMember]:
     """Yield the members that the body of a class defines, and the attributes that its methods set."""
     for item in node.body:
         if isinstance(item, scenic.PropertyDef):
@@ -351,7 +351,7 @@ def _own(module: Module, symbol: Symbol, node: ast.ClassDef) -> Iterator[Member]
                 module,
                 item,
             )
-            yield Member(
+            yield ClassMember(
                 item.name,
                 SymbolKind.PROPERTY,
                 symbol.name,
@@ -366,7 +366,7 @@ def _own(module: Module, symbol: Symbol, node: ast.ClassDef) -> Iterator[Member]
         kind = SymbolKind.METHOD if inner.kind is SymbolKind.METHOD else SymbolKind.ATTRIBUTE
         statement = None if inner.node is None else module.assignment_of.get(inner.node)
         value = None if statement is None or statement.value is None else module.text(statement.value)
-        yield Member(binding.name, kind, symbol.name, value, symbol=inner)
+        yield ClassMember(binding.name, kind, symbol.name, value, symbol=inner)
     yield from _set_by_methods(module, symbol, node)
 
 
@@ -380,7 +380,7 @@ def _needs(default: ast.expr) -> tuple[str, ...]:
     return tuple(dict.fromkeys(needs))
 
 
-def _set_by_methods(module: Module, symbol: Symbol, node: ast.ClassDef) -> Iterator[Member]:
+def _set_by_methods(module: Module, symbol: Symbol, node: ast.ClassDef) -> Iterator[ClassMember]:
     """Yield the attributes that methods set on their first parameter."""
     for method in node.body:
         if not isinstance(method, ast.FunctionDef | ast.AsyncFunctionDef):
@@ -402,7 +402,7 @@ def _set_by_methods(module: Module, symbol: Symbol, node: ast.ClassDef) -> Itera
                         module,
                         part,
                     )
-                    yield Member(attribute, SymbolKind.ATTRIBUTE, symbol.name, symbol=place)
+                    yield ClassMember(attribute, SymbolKind.ATTRIBUTE, symbol.name, symbol=place)
 
 
 def find_cycle(names: list[str], needed: Callable[[str], tuple[str, ...]]) -> list[str] | None:

@@ -5,8 +5,7 @@ from collections.abc import Mapping
 from functools import cached_property
 from weakref import proxy
 
-from scenic.compiler.semantics.classes import Class, Classes
-from scenic.compiler.semantics.classes import Member as ClassMember
+from scenic.compiler.semantics.classes import Class, Classes, ClassMember
 from scenic.compiler.semantics.kinds import ValueKind
 from scenic.compiler.semantics.modules import Exported, Module
 from scenic.compiler.semantics.names import Names

@@ -10,7 +10,7 @@ from scenic.falsification.samplers.buckets import Bandit, CrossEntropy, EpsilonG
 from scenic.falsification.samplers.evolution import Evolution
 from scenic.falsification.samplers.parzen import Parzen
 from scenic.falsification.samplers.sampler import Sampler, SamplerError
-from scenic.falsification.samplers.space_filling import Grid, Halton, Random, Sobol
+from scenic.falsification.samplers.space_filling import Grid, Halton, RandomSampler, SobolSampler
 from scenic.falsification.space import Space
 from scenic.language.spelling import nearest_option
 
@@ -18,9 +18,9 @@ __all__ = ["RESTORABLE", "SAMPLERS", "SEQUENCES", "make_sampler"]
 
 SAMPLERS: Final[Mapping[str, Callable[[Space, int, Any], Sampler]]] = MappingProxyType(
     {
-        "random": Random,
+        "random": RandomSampler,
         "halton": Halton,
-        "sobol": Sobol,
+        "sobol": SobolSampler,
         "grid": Grid,
         "ce": CrossEntropy,
         "mab": Bandit,
@@ -33,7 +33,7 @@ SAMPLERS: Final[Mapping[str, Callable[[Space, int, Any], Sampler]]] = MappingPro
 )
 """Functions that make samplers from a space, a seed and options."""
 
-SEQUENCES: Final = (Random, Halton, Sobol, Grid)
+SEQUENCES: Final = (RandomSampler, Halton, SobolSampler, Grid)
 """Samplers that do not learn."""
 
 RESTORABLE: Final = (CrossEntropy, Bandit, EpsilonGreedy, Annealing)

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from scenic.falsification.samplers.sampler import NoMorePointsError, SamplerError, options
 from scenic.falsification.space import Floats, Space
 
-__all__ = ["Grid", "Halton", "Random", "Sobol"]
+__all__ = ["Grid", "Halton", "RandomSampler", "SobolSampler"]
 
 
-class Random:
+class RandomSampler:
     """Independent uniform points."""
 
     batch = None
@@ -80,7 +80,7 @@ def _reflected(numbers: NDArray[np.int64], base: int) -> Floats:
     return result
 
 
-class Sobol:
+class SobolSampler:
     """Sobol's sequence, scrambled."""
 
     batch = None

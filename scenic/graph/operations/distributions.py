@@ -119,7 +119,7 @@ def _position(axis: Column, cumulative: _Shares) -> Column:
     return np.minimum(found, last).astype(np.int64)
 
 
-class Table:
+class LookupTable:
     """The values of a choice among constants of one kind: the payload of a look-up.
 
     Args:
@@ -136,7 +136,7 @@ class Table:
         self._key = (kind, column.tobytes())
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Table) and self._key == other._key
+        return isinstance(other, LookupTable) and self._key == other._key
 
     def __hash__(self) -> int:
         return hash(self._key)
@@ -146,12 +146,12 @@ class Table:
 
 
 def _lookup(call: Call, index: Column) -> Column:
-    table: Table = call.payload
+    table: LookupTable = call.payload
     found: Column = table.column[index]
     return found
 
 
-def _within(payload: Table, index: Bounds) -> tuple[Bounds, Mask]:
+def _within(payload: LookupTable, index: Bounds) -> tuple[Bounds, Mask]:
     """Return the table's values, one a row, and which of them each box admits, ``(m, values)``."""
     places = np.arange(len(payload.column))
     mask = (index.lower[:, np.newaxis] <= places) & (places <= index.upper[:, np.newaxis])
@@ -160,7 +160,7 @@ def _within(payload: Table, index: Bounds) -> tuple[Bounds, Mask]:
     return Bounds(values, values) if is_exact else outward(values, values), mask
 
 
-def _lookup_bounds(payload: Table, index: Bounds) -> Bounds:
+def _lookup_bounds(payload: LookupTable, index: Bounds) -> Bounds:
     values, mask = _within(payload, index)
     wide = mask if values.lower.ndim == 1 else mask[..., np.newaxis]
     lower = np.where(wide, values.lower, np.inf).min(axis=1)
@@ -170,7 +170,7 @@ def _lookup_bounds(payload: Table, index: Bounds) -> Bounds:
     return Bounds(np.where(nothing, -np.inf, lower), np.where(nothing, np.inf, upper))
 
 
-def _lookup_inverse(payload: Table, result: Bounds, index: Bounds) -> list[Bounds]:
+def _lookup_inverse(payload: LookupTable, result: Bounds, index: Bounds) -> list[Bounds]:
     values, mask = _within(payload, index)
     fits = (result.lower[:, np.newaxis] <= values.upper) & (values.lower <= result.upper[:, np.newaxis])
     mask = mask & (fits if fits.ndim == 2 else fits.all(axis=2))
@@ -178,7 +178,7 @@ def _lookup_inverse(payload: Table, result: Bounds, index: Bounds) -> list[Bound
     return [Bounds(np.where(mask, places, np.inf).min(axis=1), np.where(mask, places, -np.inf).max(axis=1))]
 
 
-def _lookup_solver(terms: Terms, payload: Table, index: Any) -> Any:
+def _lookup_solver(terms: Terms, payload: LookupTable, index: Any) -> Any:
     if payload.kind is Kind.BOOLEAN:
         options: list[Any] = [terms.real(float(value)) == terms.real(1) for value in payload.column]
     elif payload.column.ndim == 1:
@@ -206,7 +206,7 @@ def _constants(operands: Sequence[Node], _payload: object) -> Node | None:
     kinds = {option.kind for option in options}
     if len(kinds) > 1 or not all(option.is_constant and not option.kind.is_boxed for option in options):
         return None
-    table = Table(kinds.pop(), np.concatenate([option.payload.column for option in options]))
+    table = LookupTable(kinds.pop(), np.concatenate([option.payload.column for option in options]))
     return make_node(LOOKUP, [index], table)
 
 

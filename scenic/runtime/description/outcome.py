@@ -126,7 +126,7 @@ class Program:
 
 
 @dataclass(slots=True)
-class Module:
+class RunningModule:
     """One file of the program while it runs."""
 
     filename: str

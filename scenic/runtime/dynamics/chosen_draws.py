@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from scenic.graph.draws import Lanes
+from scenic.graph.draws import LaneOwners
 from scenic.graph.points import PointSet
 from scenic.runtime.dynamics.draws import Draw, Source
 
@@ -23,7 +23,7 @@ _AHEAD: Final = 32
 class _Driven:
     """Numbers of a row, in the order in which they are drawn."""
 
-    def __init__(self, points: PointSet, axes: int, lane: Lanes, rest: Source) -> None:
+    def __init__(self, points: PointSet, axes: int, lane: LaneOwners, rest: Source) -> None:
         self._points = points
         self._axes = axes
         self._lane = lane
@@ -50,7 +50,7 @@ def driven(points: PointSet, axes: int, *, seed: int, scene: int, attempt: int) 
 
     ``attempt`` tells simulations of one scene from one another, of which the earlier ones were rejected.
     """
-    return lambda rest: _Driven(points, axes, Lanes.of(seed, scene, attempt), rest)
+    return lambda rest: _Driven(points, axes, LaneOwners.of(seed, scene, attempt), rest)
 
 
 class _Kept:

@@ -13,7 +13,7 @@ from weakref import ref
 
 import numpy as np
 
-from scenic.runtime.python.samples import Globals, Lanes, Sample
+from scenic.runtime.python.samples import Globals, Sample, SampledLanes
 from scenic.runtime.python.shared_containers import Originals
 from scenic.runtime.values.instance_base import Instance
 from scenic.runtime.values.ownership import (
@@ -43,7 +43,7 @@ class Copies(Sample):
 
     __slots__ = ("_depth", "_filled", "_modules", "_originals", "_own", "_shares", "_waiting")
 
-    def __init__(self, lanes: Lanes, lane: int, originals: Originals) -> None:
+    def __init__(self, lanes: SampledLanes, lane: int, originals: Originals) -> None:
         names = Globals()
         names.contents = originals.contents
         super().__init__(lanes, lane, names)

@@ -31,7 +31,7 @@ from scenic.runtime.values.lazy import MEMO, is_lazy, resolve
 from scenic.runtime.values.values import describe, is_number
 
 if TYPE_CHECKING:
-    from scenic.runtime.description.outcome import Module, Program
+    from scenic.runtime.description.outcome import Program, RunningModule
     from scenic.runtime.dynamics.run import Run
 
 __all__ = ["Dynamics"]
@@ -45,7 +45,7 @@ class Dynamics:
     CONTINUE = statements.CONTINUE
 
     _program: "Program"
-    _module: "Module"
+    _module: "RunningModule"
 
     @property
     def _context(self) -> Context:

@@ -29,7 +29,7 @@ from scenic.runtime.values.values import Random, as_node, as_value, describe, is
 
 __all__ = [
     "ExternalParameter",
-    "Series",
+    "SeriesValue",
     "TimeSeries",
     "VerifaiDiscreteRange",
     "VerifaiOptions",
@@ -297,7 +297,7 @@ def _normal(operation: str, law: Sequence[float], window: Any, edges: Sequence[f
     return _make(operation, law, window, chosen)
 
 
-class Series:
+class SeriesValue:
     """The value of a time series in a scene: one value for each step of a simulation."""
 
     def __init__(self, *values: Any) -> None:
@@ -336,7 +336,7 @@ class Series:
 
 
 def TimeSeries(param: Any) -> Any:
-    """Return an external parameter that has another value at each step of a simulation: `Series`.
+    """Return an external parameter that has another value at each step of a simulation: `SeriesValue`.
 
     The parameter ``timeBound`` of the program is the number of steps.
     """
@@ -350,4 +350,4 @@ def TimeSeries(param: Any) -> Any:
             span=here(),
             help="write `param timeBound = 100` before it",
         )
-    return call_later(Series, param, *(param.resampled() for _ in range(steps - 1)))
+    return call_later(SeriesValue, param, *(param.resampled() for _ in range(steps - 1)))

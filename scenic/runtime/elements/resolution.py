@@ -43,7 +43,7 @@ class ResolutionStep:
 
 
 @dataclass(frozen=True, slots=True)
-class Resolution:
+class SpecifierResolution:
     """Specifiers in the order in which to evaluate them, with what is taken of each.
 
     It depends on the kinds of the specifiers alone, not on their values: a class keeps its resolutions.
@@ -157,7 +157,7 @@ def _reads(offered: Mapping[str, object], names: Sequence[str]) -> frozenset[str
     return reads_of(lazy) if lazy else frozenset()
 
 
-def resolution_of(cls: type[Point], specifiers: Sequence[Specifier], *, mode_2d: bool) -> Resolution:
+def resolution_of(cls: type[Point], specifiers: Sequence[Specifier], *, mode_2d: bool) -> SpecifierResolution:
     """Resolve specifiers as `resolve` does, but only once for each class and list of specifiers."""
     kinds = tuple(
         [
@@ -221,7 +221,7 @@ def _claims(
 
 def resolve(
     cls: type[Point], specifiers: Sequence[Specifier], properties: Mapping[str, Property]
-) -> Resolution:
+) -> SpecifierResolution:
     """Decide who provides what, and in which order."""
     _reject_duplicates(specifiers)
     for name, entry in properties.items():
@@ -243,7 +243,7 @@ def resolve(
         for specifier in _topological(owns, modifies, claims, modifiers)
     }
     constants = _constants(cls, steps.values(), properties)
-    return Resolution(
+    return SpecifierResolution(
         tuple(step for step in steps.values() if step.default is None or step.names[0] not in constants),
         constants,
         {name: steps[specifier] for name, specifier in {**claims, **modifiers}.items()},
@@ -489,4 +489,4 @@ def _quoted(names: frozenset[str]) -> str:
     return ", ".join(repr(name) for name in sorted(names))
 
 
-__all__ = ["Resolution", "build", "check_assigned", "class_defaults", "resolve"]
+__all__ = ["SpecifierResolution", "build", "check_assigned", "class_defaults", "resolve"]

@@ -30,7 +30,7 @@ from scenic.runtime.description import conditions, mutation
 from scenic.runtime.description.conditions import Condition
 from scenic.runtime.description.declarations import Closure, label_of, required
 from scenic.runtime.description.definitions import behavior_of
-from scenic.runtime.description.outcome import Module, Program, Requirement
+from scenic.runtime.description.outcome import Program, Requirement, RunningModule
 from scenic.runtime.dynamics.language import Dynamics
 from scenic.runtime.dynamics.run_context import RunContext
 from scenic.runtime.elements.functions import convert
@@ -68,7 +68,7 @@ from scenic.runtime.values.values import (
 )
 
 
-class Modules(Protocol):
+class ModuleCompiler(Protocol):
     """Finds and compiles modules of Scenic code (`scenic.compiler.loader`, passed in)."""
 
     def find(self, name: str) -> Path | None:
@@ -83,7 +83,7 @@ class Prelude(Symbolic, Dynamics):
 
     Object = Object
 
-    def __init__(self, context: Context, program: Program, module: Module, modules: "Loader") -> None:
+    def __init__(self, context: Context, program: Program, module: RunningModule, modules: "Loader") -> None:
         self._compilation = context
         context.objects = program.objects
         self._program = program
@@ -435,7 +435,7 @@ class Loader:
     """
 
     def __init__(
-        self, modules: Modules, context: Context, program: Program, *, model: str | None = None
+        self, modules: ModuleCompiler, context: Context, program: Program, *, model: str | None = None
     ) -> None:
         self._modules = modules
         self._context = context
@@ -443,7 +443,7 @@ class Loader:
         self._model = model
         self._folder = "."
         self._loaded: dict[Path, ModuleType] = {}
-        self._states: dict[Path, Module] = {}
+        self._states: dict[Path, RunningModule] = {}
         self._packages: dict[str, ModuleType] = {}
         self._python: dict[str, ModuleType] = {}
 
@@ -454,16 +454,16 @@ class Loader:
 
     def run(
         self, code: CodeType, filename: str, scope: Mapping[str, Any] | None = None
-    ) -> tuple[ModuleType, Module]:
+    ) -> tuple[ModuleType, RunningModule]:
         """Run the code of a file as a module, with these globals to begin with."""
-        state = Module(filename)
+        state = RunningModule(filename)
         self._folder = str(Path(filename).parent)
         module = ModuleType("__main__")
         vars(module).update(scope or {})
         self._execute(code, module, state)
         return module, state
 
-    def _execute(self, code: CodeType, module: ModuleType, state: Module) -> None:
+    def _execute(self, code: CodeType, module: ModuleType, state: RunningModule) -> None:
         prelude = Prelude(self._context, self._program, state, self)
         scope = state.scope = module.__dict__
         scope[PRELUDE] = prelude
@@ -479,7 +479,7 @@ class Loader:
 
     def _import(
         self,
-        importer: Module,
+        importer: RunningModule,
         name: str,
         globals: Mapping[str, Any] | None = None,
         locals: Mapping[str, Any] | None = None,
@@ -511,7 +511,7 @@ class Loader:
             module = package
         return module
 
-    def _package(self, name: str, importer: Module) -> ModuleType:
+    def _package(self, name: str, importer: RunningModule) -> ModuleType:
         """Return the module of a package: that of its file, or else one that only leads to its parts."""
         path = self._modules.find(name)
         if path is not None and (path.stem == "__init__" or path in self._loaded):
@@ -537,7 +537,7 @@ class Loader:
 
     def _import_python(
         self,
-        importer: Module,
+        importer: RunningModule,
         name: str,
         globals: Mapping[str, Any] | None,
         locals: Mapping[str, Any] | None,
@@ -571,7 +571,7 @@ class Loader:
             setattr(holder, item, self._load(path, f"{name}.{item}".strip("."), importer))
         return holder
 
-    def _load(self, path: Path, name: str, importer: Module, *, is_model: bool = False) -> ModuleType:
+    def _load(self, path: Path, name: str, importer: RunningModule, *, is_model: bool = False) -> ModuleType:
         active = current.get()
         modules = self._loaded
         if isinstance(active, RunContext) and path not in modules:
@@ -583,7 +583,7 @@ class Loader:
             if isinstance(active, RunContext):
                 active.run.copies.adopt(module)
             package = name if path.stem == "__init__" else name.rpartition(".")[0]
-            state = self._states[path] = Module(
+            state = self._states[path] = RunningModule(
                 str(path), is_model=is_model or importer.is_model, package=package
             )
             self._execute(self._modules.code(path), module, state)
@@ -595,7 +595,7 @@ class Loader:
                 importer.workspace = state.workspace
         return self._present(modules[path])
 
-    def use_model(self, name: str, scope: dict[str, Any], importer: Module) -> None:
+    def use_model(self, name: str, scope: dict[str, Any], importer: RunningModule) -> None:
         """Give a module everything that a model defines."""
         model_name = self._model or name
         path = self._modules.find(model_name)
@@ -615,4 +615,4 @@ class Loader:
         )
 
 
-__all__ = ["Condition", "Loader", "Modules", "Prelude"]
+__all__ = ["Condition", "Loader", "ModuleCompiler", "Prelude"]

@@ -87,7 +87,7 @@ class _Holder:
         self.distribution = distribution
 
 
-class Values:
+class DependencyValues:
     """The sampled values of dependencies, by the dependencies themselves."""
 
     def __init__(self, before: tuple[Any, ...], after: tuple[Any, ...]) -> None:
@@ -99,7 +99,7 @@ class Values:
 
 def _drawn(holder: _Holder, sampled: tuple[Any, ...]) -> Any:
     law = holder.distribution
-    return law.sampleGiven(Values(law._dependencies, sampled))
+    return law.sampleGiven(DependencyValues(law._dependencies, sampled))
 
 
 def _drawn_now(law: Distribution) -> Any:

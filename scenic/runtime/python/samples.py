@@ -39,7 +39,7 @@ from scenic.runtime.values.ownership import (
 from scenic.runtime.values.values import Orientation, Random, Vector, as_node
 
 
-class Lanes(Protocol):
+class SampledLanes(Protocol):
     """Values of nodes in a number of lanes."""
 
     def read(self, lane: int, node: Node) -> Any:
@@ -408,7 +408,7 @@ class Sample:
 
     def __init__(
         self,
-        lanes: Lanes,
+        lanes: SampledLanes,
         lane: int,
         names: Globals | None = None,
         *,

@@ -16,7 +16,7 @@ from scenic.graph.bounds import Bounds
 from scenic.graph.intervals import EPSILON
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
-from scenic.graph.operations.distributions import LOOKUP, Table
+from scenic.graph.operations.distributions import LOOKUP, LookupTable
 from scenic.runtime.geometry.meshes.bodies import Body
 from scenic.runtime.geometry.meshes.mesh import Mesh
 from scenic.runtime.geometry.meshes.surface import Side, face_orientations, side_contains
@@ -144,8 +144,8 @@ class FixedSide:
         return Triangles(self.corners)
 
     @cached_property
-    def _table(self) -> Table:
-        return Table(Kind.ORIENTATION, self.orientations)
+    def _table(self) -> LookupTable:
+        return LookupTable(Kind.ORIENTATION, self.orientations)
 
 
 __all__ = ["FixedSide"]

@@ -10,7 +10,7 @@ from scenic.graph.kinds import Kind
 from scenic.language.errors import ScenicValueError
 from scenic.runtime.regions.base import Points, Region
 from scenic.runtime.regions.fields import VectorField, steps_of
-from scenic.runtime.values.lane_methods import Lanes, over_lanes
+from scenic.runtime.values.lane_methods import MethodLanes, over_lanes
 from scenic.runtime.values.lazy import Lazy, defer
 from scenic.runtime.values.values import is_random, to_scalar, to_vector
 
@@ -76,7 +76,7 @@ class RegionField(VectorField):
 
     def follow_together(
         self,
-        lanes: Lanes,
+        lanes: MethodLanes,
         setting: tuple[int | None, float | None],
         points: Points,
         distances: NDArray[np.float64],

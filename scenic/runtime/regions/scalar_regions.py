@@ -11,10 +11,10 @@ from typing import Protocol
 import numpy as np
 
 from scenic.graph import quaternions
-from scenic.runtime.geometry.contact.scalar_bodies import SLACK, Placed, Triple, meet
+from scenic.runtime.geometry.contact.scalar_bodies import SLACK, PlacedBody, Triple, meet
 from scenic.runtime.geometry.flat.polygons import Polygons
 
-__all__ = ["Ball", "Box", "Disc", "Polygon", "Rectangle", "Single"]
+__all__ = ["Ball", "Disc", "Polygon", "Rectangle", "Single", "SingleBox"]
 
 
 class Single(Protocol):
@@ -23,17 +23,17 @@ class Single(Protocol):
     def holds_point(self, point: Triple) -> bool | None:
         """Return whether it holds a point."""
 
-    def holds_body(self, body: Placed) -> bool | None:
+    def holds_body(self, body: PlacedBody) -> bool | None:
         """Return whether it holds the whole of a body."""
 
-    def meets_body(self, body: Placed) -> bool | None:
+    def meets_body(self, body: PlacedBody) -> bool | None:
         """Return whether it shares a point with a body."""
 
     def distance(self, point: Triple) -> float | None:
         """The distance of a point, in metres; 0 inside. Equal in every bit to that over lanes."""
 
 
-class Flat:
+class SingleFlat:
     """A region of the plane at some height; its containment ignores heights."""
 
     def __init__(self, height: float, box: tuple[float, float, float, float]) -> None:
@@ -53,7 +53,7 @@ class Flat:
         """Return the distance seen from above."""
         return None
 
-    def meets_body(self, body: Placed) -> bool | None:
+    def meets_body(self, body: PlacedBody) -> bool | None:
         """Return whether a body certainly meets the region or is certainly apart from it, ``None`` if neither shows.
 
         A body meets it only within the height of the plane and over the region's box.
@@ -75,7 +75,7 @@ class Flat:
         return True if body.mesh.is_box and self.holds_point((x, y, self._height)) else None
 
 
-class Disc(Flat):
+class Disc(SingleFlat):
     """A disc, or for bodies a polygon inscribed in it."""
 
     def __init__(self, center: Triple, radius: float, corners: int) -> None:
@@ -90,10 +90,10 @@ class Disc(Flat):
         return dx * dx + dy * dy <= self._radius * self._radius
 
     def beside(self, point: Triple) -> float | None:
-        """See `Flat`."""
+        """See `SingleFlat`."""
         return max(float(np.hypot(point[0] - self._x, point[1] - self._y)) - self._radius, 0.0)
 
-    def holds_body(self, body: Placed) -> bool | None:
+    def holds_body(self, body: PlacedBody) -> bool | None:
         """Decide by the corners of the body's box."""
         farthest = max(math.hypot(x - self._x, y - self._y) for x, y, _ in body.corners())
         if farthest < self._inner - body.slack:
@@ -112,7 +112,7 @@ class ConvexOutline:
             (x, y, -dy / length, dx / length) for x, y, dx, dy in edges if (length := math.hypot(dx, dy)) > 0
         ]
 
-    def holds(self, body: Placed) -> bool | None:
+    def holds(self, body: PlacedBody) -> bool | None:
         """Return whether the column above and below it holds a body."""
         if len(self._edges) < 3:
             return None
@@ -127,7 +127,7 @@ class ConvexOutline:
         return True if least > body.slack else None
 
 
-class Rectangle(Flat):
+class Rectangle(SingleFlat):
     """A rectangle turned by a heading."""
 
     def __init__(self, position: Triple, cos: float, sin: float, width: float, length: float) -> None:
@@ -149,7 +149,7 @@ class Rectangle(Flat):
         return abs(across) <= self._across and abs(along) <= self._along
 
     def beside(self, point: Triple) -> float | None:
-        """See `Flat`."""
+        """See `SingleFlat`."""
         across, along = self._local(point)
         return float(np.hypot(max(abs(across) - self._across, 0.0), max(abs(along) - self._along, 0.0)))
 
@@ -157,12 +157,12 @@ class Rectangle(Flat):
         dx, dy = point[0] - self._x, point[1] - self._y
         return dx * self._cos + dy * self._sin, dy * self._cos - dx * self._sin
 
-    def holds_body(self, body: Placed) -> bool | None:
+    def holds_body(self, body: PlacedBody) -> bool | None:
         """Decide by the region's edges."""
         return self._outline.holds(body)
 
 
-class Polygon(Flat):
+class Polygon(SingleFlat):
     """A polygon, or several, with holes."""
 
     def __init__(self, polygons: Polygons, height: float) -> None:
@@ -176,10 +176,10 @@ class Polygon(Flat):
         return self._polygons.holds_point(point[0], point[1])
 
     def beside(self, point: Triple) -> float | None:
-        """See `Flat`."""
+        """See `SingleFlat`."""
         return self._polygons.distance(point[0], point[1])
 
-    def holds_body(self, body: Placed) -> bool | None:
+    def holds_body(self, body: PlacedBody) -> bool | None:
         """Decide by the region's edges if it is convex; else by a disc about the body."""
         if self._outline is not None:
             return self._outline.holds(body)
@@ -188,10 +188,10 @@ class Polygon(Flat):
         return True if self._polygons.holds_disc(x, y, math.hypot(dx, dy) + body.slack) else None
 
 
-class Box:
+class SingleBox:
     """A solid box."""
 
-    def __init__(self, body: Placed, rotation: tuple[float, float, float, float], size: Triple) -> None:
+    def __init__(self, body: PlacedBody, rotation: tuple[float, float, float, float], size: Triple) -> None:
         self._body = body
         x, y, z, w = rotation
         self._inverse = (-x, -y, -z, w)
@@ -215,7 +215,7 @@ class Box:
         width, length, height = self._size
         return x / width, y / length, z / height
 
-    def holds_body(self, body: Placed) -> bool | None:
+    def holds_body(self, body: PlacedBody) -> bool | None:
         """Decide by the body's extents along the axes of the region."""
         reach = [body.reach(*axis) for axis in self._body.axes]
         held = self._within(body.position, (reach[0], reach[1], reach[2]), body.slack)
@@ -233,7 +233,7 @@ class Box:
             certain = certain and margin > slack
         return True if certain else None
 
-    def meets_body(self, body: Placed) -> bool | None:
+    def meets_body(self, body: PlacedBody) -> bool | None:
         """As two bodies meet."""
         return meet(self._body, body)
 
@@ -241,7 +241,7 @@ class Box:
 class Ball:
     """A solid ellipsoid."""
 
-    def __init__(self, body: Placed) -> None:
+    def __init__(self, body: PlacedBody) -> None:
         self._body = body
 
     def holds_point(self, point: Triple) -> bool | None:
@@ -250,7 +250,7 @@ class Ball:
         slack = SLACK + self._body.slack / min(self._body.half)
         return None if abs(share - 1) < slack else share < 1
 
-    def holds_body(self, body: Placed) -> bool | None:
+    def holds_body(self, body: PlacedBody) -> bool | None:
         """Decide by the corners of the body's box."""
         farthest = max(map(self._share, body.corners()))
         slack = SLACK + (self._body.slack + body.slack) / min(self._body.half)
@@ -258,7 +258,7 @@ class Ball:
             return True
         return False if body.mesh.is_box and farthest > 1 + slack else None
 
-    def meets_body(self, body: Placed) -> bool | None:
+    def meets_body(self, body: PlacedBody) -> bool | None:
         """Only whether its box is apart from the body's."""
         return False if meet(self._body, body) is False else None
 

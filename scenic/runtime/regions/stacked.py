@@ -12,7 +12,7 @@ import numpy as np
 
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call
-from scenic.runtime.geometry.contact.scalar_bodies import Placed, placed
+from scenic.runtime.geometry.contact.scalar_bodies import PlacedBody, placed
 from scenic.runtime.geometry.meshes import primitives
 from scenic.runtime.geometry.meshes.bodies import Body
 from scenic.runtime.geometry.meshes.mesh import Mesh
@@ -35,7 +35,7 @@ def body_operands(thing: Any) -> tuple[Any, Any, Any, Any]:
     return thing.position, thing.orientation, size, thing.shape
 
 
-def placed_of(thing: Any) -> Placed | None:
+def placed_of(thing: Any) -> PlacedBody | None:
     """Return the body of an object on plain floats; ``None`` where something of it is random."""
     position, orientation, shape = thing.position, thing.orientation, thing.shape
     width, length, height = thing.width, thing.length, thing.height

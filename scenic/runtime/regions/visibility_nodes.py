@@ -15,7 +15,7 @@ from scenic.graph.node import Graph, Node
 from scenic.graph.operation import Call, Operation, always
 from scenic.language.errors import ScenicTypeError
 from scenic.language.types import OBJECT, POINT
-from scenic.runtime.geometry.contact.scalar_bodies import Placed, Triple, axes_of, is_near_way
+from scenic.runtime.geometry.contact.scalar_bodies import PlacedBody, Triple, axes_of, is_near_way
 from scenic.runtime.geometry.views.observers import Views
 from scenic.runtime.geometry.views.occluders import Occluder
 from scenic.runtime.geometry.views.scalar_views import View, sees_body, sees_point
@@ -101,7 +101,7 @@ def _at_once(observer: Any, target: Any, occluders: Sequence[object]) -> bool | 
     )
 
 
-def _in_the_way(thing: Any, start: Triple, end: Triple, radius: float) -> Placed | Literal[False] | None:
+def _in_the_way(thing: Any, start: Triple, end: Triple, radius: float) -> PlacedBody | Literal[False] | None:
     """Return the body of an object that may be between a camera and a ball; false if it is not, ``None`` if it is random."""
     position, width, length, height = thing.position, thing.width, thing.length, thing.height
     if type(position) is not Vector or not (type(width) is type(length) is type(height) is float):

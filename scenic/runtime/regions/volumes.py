@@ -12,7 +12,7 @@ from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Operation, always
 from scenic.language.errors import ScenicValueError
 from scenic.runtime.geometry.contact.collision import Body, collide
-from scenic.runtime.geometry.contact.scalar_bodies import Placed, placed
+from scenic.runtime.geometry.contact.scalar_bodies import PlacedBody, placed
 from scenic.runtime.geometry.containment import body_containment as containment
 from scenic.runtime.geometry.meshes import primitives
 from scenic.runtime.geometry.meshes.mesh import Mesh
@@ -22,7 +22,7 @@ from scenic.runtime.ground.context import here
 from scenic.runtime.regions import generic
 from scenic.runtime.regions.base import Mask, Points, Region
 from scenic.runtime.regions.nearness import body_box
-from scenic.runtime.regions.scalar_regions import Ball, Box, Single
+from scenic.runtime.regions.scalar_regions import Ball, Single, SingleBox
 from scenic.runtime.values.values import (
     Orientation,
     apply,
@@ -101,7 +101,7 @@ class PlacedVolume(Region):
         """The region seen from above."""
         return generic.outline_from_above(self)
 
-    def _as_body(self) -> Placed:
+    def _as_body(self) -> PlacedBody:
         """Return the box about it, where nothing is random."""
         return placed(self.position.row, self.rotation.q, self.dimensions.row, primitives.box())
 
@@ -174,7 +174,7 @@ class BoxRegion(PlacedVolume):
         return primitives.box()
 
     def single(self) -> Single | None:
-        return Box(self._as_body(), self.rotation.q, self.dimensions.row)
+        return SingleBox(self._as_body(), self.rotation.q, self.dimensions.row)
 
     def uniform_placement(self) -> tuple[Any, Any]:
         return self._placed(*(operate("subtract", uniform(), 0.5) for _ in range(3)))

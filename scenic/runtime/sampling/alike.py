@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 
 from scenic.dataclass import dataclass
 from scenic.graph.domain import Domain
-from scenic.graph.draws import Counter, Source, Words, mix, open_unit
+from scenic.graph.draws import Counter, NumberSource, Words, mix, open_unit
 from scenic.graph.node import Graph, Node
 from scenic.runtime.geometry.ragged import distinct
 from scenic.runtime.sampling.checks import CollisionCheck, ObjectNodes
-from scenic.runtime.sampling.halving import Joint
+from scenic.runtime.sampling.halving import JointCheck
 from scenic.runtime.shapes.shapes import Shape
 
 __all__ = ["Aliased", "Group", "GroupKind", "kinds_of"]
@@ -35,7 +35,7 @@ class Group:
     """
 
     draws: frozenset[int]
-    joints: tuple[Joint, ...]
+    joints: tuple[JointCheck, ...]
     objects: tuple[ObjectNodes, ...]
     numbers: tuple[int, ...]
 
@@ -58,7 +58,7 @@ class GroupKind:
     """
 
     members: NDArray[np.intp]
-    joints: tuple[Joint, ...]
+    joints: tuple[JointCheck, ...]
     objects: tuple[ObjectNodes, ...]
     numbers: NDArray[np.intp]
     domain: Domain
@@ -79,7 +79,9 @@ class Aliased:
 
     """
 
-    def __init__(self, source: Source, addresses: Words, table: Words, member: NDArray[np.intp]) -> None:
+    def __init__(
+        self, source: NumberSource, addresses: Words, table: Words, member: NDArray[np.intp]
+    ) -> None:
         self._source = source
         self._addresses = addresses
         self._table = table
@@ -119,7 +121,7 @@ class Aliased:
     def _rows(self, addresses: Words) -> NDArray[np.intp]:
         return np.searchsorted(self._addresses, addresses)
 
-    def _parts(self, rows: NDArray[np.intp]) -> Iterator[tuple[NDArray[np.intp], Source, Words]]:
+    def _parts(self, rows: NDArray[np.intp]) -> Iterator[tuple[NDArray[np.intp], NumberSource, Words]]:
         for number in distinct(self._member).tolist():
             lanes = np.flatnonzero(self._member == number)
             yield lanes, self._source.take(lanes), self._table[rows, number]
@@ -164,11 +166,11 @@ def _form(group: Group, graph: Graph, domain: Domain, narrowing: Sequence[Sequen
     return _Form(tuple(rows), tuple(node for node in nodes if node.is_drawn), tuple(parts))
 
 
-def _roots(joint: Joint) -> Sequence[Node]:
+def _roots(joint: JointCheck) -> Sequence[Node]:
     return joint.check.nodes
 
 
-def _likeness(joint: Joint, group: Group) -> Hashable:
+def _likeness(joint: JointCheck, group: Group) -> Hashable:
     check = joint.check
     own: Hashable = None
     if isinstance(check, CollisionCheck):

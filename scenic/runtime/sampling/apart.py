@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from scenic.dataclass import dataclass
 from scenic.graph.batch import Batch
-from scenic.graph.draws import Lanes, attempt_keys
+from scenic.graph.draws import LaneOwners, attempt_keys
 from scenic.graph.node import Node
 from scenic.runtime.geometry.ragged import expand
 from scenic.runtime.sampling.alike import Aliased, Group, GroupKind, kinds_of
@@ -22,7 +22,7 @@ from scenic.runtime.sampling.checks import Check, CollisionCheck, Mask
 from scenic.runtime.sampling.draw_blocks import Reads
 from scenic.runtime.sampling.engine import Engine, Plan
 from scenic.runtime.sampling.group_collisions import Bodies
-from scenic.runtime.sampling.halving import Joint
+from scenic.runtime.sampling.halving import JointCheck
 from scenic.runtime.sampling.pending import Pending
 
 __all__ = ["Apart", "attempts_at_kind", "rehearsed", "separated"]
@@ -186,7 +186,7 @@ def _groups(
         Group(
             mine,
             tuple(
-                Joint(check, numbers[number], soft_places.get(number))
+                JointCheck(check, numbers[number], soft_places.get(number))
                 for number, check in sorted(checks, key=lambda item: (item[1].cost, item[0]))
             ),
             tuple(collisions.objects[number] for number in objects),
@@ -238,7 +238,7 @@ def _batch(
     member: NDArray[np.intp],
     attempts: NDArray[np.int64],
 ) -> Batch:
-    lanes = Lanes(
+    lanes = LaneOwners(
         pending.seed[scenes], pending.k[scenes], attempts, attempt_keys(pending.key[scenes], attempts)
     )
     source = Aliased(engine.source_of(lanes), kind.addresses, kind.table, member)

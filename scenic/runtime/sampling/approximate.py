@@ -18,8 +18,8 @@ from scenic.dataclass import dataclass
 from scenic.graph.batch import Batch
 from scenic.graph.draws import (
     Counter,
+    NumberSource,
     Points,
-    Source,
     Words,
     attempt_keys,
     scene_keys,
@@ -98,7 +98,7 @@ def approximated(
     lanes: int,
     max_attempts: int,
     checks: Sequence[Check],
-    fixing: Callable[[Source], Source] = lambda source: source,
+    fixing: Callable[[NumberSource], NumberSource] = lambda source: source,
 ) -> Iterator[Accepted | Exhausted]:
     """Scenes ``first`` to ``first + count`` of a seed, in order; scene ``k`` is lane ``k % lanes`` of block ``k // lanes``.
 
@@ -136,7 +136,7 @@ class _Sampler:
         engine: Engine,
         max_attempts: int,
         checks: Sequence[Check],
-        fixing: Callable[[Source], Source],
+        fixing: Callable[[NumberSource], NumberSource],
     ) -> None:
         self._engine = engine
         self._checks = checks

@@ -69,12 +69,12 @@ class Check(Protocol):
     def test(self, batch: Batch) -> CheckVerdict:
         """Judge every lane of the batch."""
 
-    def parts(self, batch: Batch) -> Sequence["Part"]:
+    def parts(self, batch: Batch) -> Sequence["CheckPart"]:
         """Return the requirements that it consists of, each with its own verdict, for reports."""
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class CheckPart:
     """One requirement in a report: what it is called, where it comes from, in which lanes it holds."""
 
     label: str
@@ -92,7 +92,7 @@ class Part:
         return np.zeros(len(self.holds), dtype=np.bool_) if self.undecided is None else self.undecided
 
 
-def joined(parts: Sequence[Part]) -> Part:
+def joined(parts: Sequence[CheckPart]) -> CheckPart:
     """Return one requirement on the lanes of several batches."""
     return replace(
         parts[0],
@@ -101,10 +101,12 @@ def joined(parts: Sequence[Part]) -> Part:
     )
 
 
-def _only_part(check: Check, batch: Batch, note: str = "", undecided: Mask | None = None) -> Sequence[Part]:
+def _only_part(
+    check: Check, batch: Batch, note: str = "", undecided: Mask | None = None
+) -> Sequence[CheckPart]:
     verdict = check.test(batch)
     holds = verdict.holds if verdict.failed is None else verdict.holds & ~verdict.failed
-    return [Part(check.label, check.span, holds, note, undecided=undecided)]
+    return [CheckPart(check.label, check.span, holds, note, undecided=undecided)]
 
 
 def _any_rejected(batch: Batch, nodes: Sequence[Node]) -> Mask | None:
@@ -126,7 +128,7 @@ class NodeCheck:
     separate: bool = False
     filename: str | None = None
     note: str = ""
-    """For reports in which it rejects everything; see `Part`."""
+    """For reports in which it rejects everything; see `CheckPart`."""
 
     @property
     def nodes(self) -> Sequence[Node]:
@@ -141,7 +143,7 @@ class NodeCheck:
         failed = status == FAULT
         return CheckVerdict(holds, failed if failed.any() else None)
 
-    def parts(self, batch: Batch) -> Sequence[Part]:
+    def parts(self, batch: Batch) -> Sequence[CheckPart]:
         return _only_part(self, batch, self.note, _any_rejected(batch, [self.node]))
 
 
@@ -171,7 +173,7 @@ class DrawingCheck:
         failed = status == FAULT
         return CheckVerdict(status == OK, failed if failed.any() else None)
 
-    def parts(self, batch: Batch) -> Sequence[Part]:
+    def parts(self, batch: Batch) -> Sequence[CheckPart]:
         (part,) = _only_part(self, batch)
         # Below a choice nothing has a check of its own.
         operands = self.node.operands if self.node.operation.strict else ()
@@ -291,7 +293,7 @@ class CollisionCheck:
             cast = [item.body(batch) for item in self.objects]
         return CheckVerdict(self._collider.test(cast, len(batch)).free)
 
-    def parts(self, batch: Batch) -> Sequence[Part]:
+    def parts(self, batch: Batch) -> Sequence[CheckPart]:
         bodies = [item.body(batch) for item in self.objects]
         meetings = collide(bodies, self.pairs, lanes=len(batch), exhaustive=True).pairs
         assert meetings is not None
@@ -300,7 +302,7 @@ class CollisionCheck:
             f"{item.label} is {size}" if size else "" for item, size in zip(self.objects, sizes, strict=True)
         ]
         return [
-            Part(
+            CheckPart(
                 f"collision of {self.objects[first].label} and {self.objects[second].label}",
                 self.objects[second].span,
                 ~meetings[:, pair],

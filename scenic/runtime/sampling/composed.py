@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from scenic.graph.draws import Counter, Source, Words, mix, open_unit
+from scenic.graph.draws import Counter, NumberSource, Words, mix, open_unit
 from scenic.runtime.geometry.ragged import distinct
 
 __all__ = ["Composed"]
@@ -21,7 +21,7 @@ class Composed:
 
     """
 
-    def __init__(self, sources: Sequence[Source], owner: Mapping[int, int], first: int = 0) -> None:
+    def __init__(self, sources: Sequence[NumberSource], owner: Mapping[int, int], first: int = 0) -> None:
         self._sources = sources
         self._owner = owner
         self._first = first

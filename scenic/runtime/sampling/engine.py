@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from scenic.dataclass import dataclass
 from scenic.graph.batch import Batch
 from scenic.graph.domain import Domain
-from scenic.graph.draws import Counter, Lanes, Source, attempt_keys, scene_keys, seed_word
+from scenic.graph.draws import Counter, LaneOwners, NumberSource, attempt_keys, scene_keys, seed_word
 from scenic.graph.kinds import Codec
 from scenic.graph.node import Graph, Node
 from scenic.graph.schedule import Scheduler
@@ -171,7 +171,7 @@ class Engine:
     def __init__(
         self,
         plan: Plan,
-        source: Callable[[Lanes], Source] = lambda lanes: Counter(lanes.keys),
+        source: Callable[[LaneOwners], NumberSource] = lambda lanes: Counter(lanes.keys),
         *,
         grouped: bool = True,
     ) -> None:
@@ -340,7 +340,7 @@ class Engine:
                 yield result
                 upcoming += 1
 
-    def driven(self, source: Callable[[Lanes], Source]) -> "Engine":
+    def driven(self, source: Callable[[LaneOwners], NumberSource]) -> "Engine":
         """The engine with other draws; it knows, and learns, what rounds and checks cost together with this one."""
         other = copy(self)
         other._source = source
@@ -457,7 +457,7 @@ class Engine:
         return chosen.scenes * chosen.ahead
 
     def replay(
-        self, source: Source, task: SceneTask, attempts: int, kind: Callable[..., Batch] = Batch
+        self, source: NumberSource, task: SceneTask, attempts: int, kind: Callable[..., Batch] = Batch
     ) -> Accepted:
         """The scene of given draws, one lane of points of the cube; no check is made again.
 
@@ -480,7 +480,7 @@ class Engine:
         """
         seeds = np.repeat(seed_word(seed), len(numbers))
         keys = attempt_keys(scene_keys(seeds, numbers), attempts - 1)
-        batch = self.batch(self._source(Lanes(seeds, numbers, attempts - 1, keys)))
+        batch = self.batch(self._source(LaneOwners(seeds, numbers, attempts - 1, keys)))
         batch.settle(self.plan.outputs)
         lanes = self._found([seed] * len(numbers), numbers.tolist(), attempts.tolist(), batch)
         return [(lanes, lane) for lane in range(len(numbers))]
@@ -520,7 +520,7 @@ class Engine:
         """An engine for a part of the plan, with the same draws."""
         return Engine(plan, self._source, grouped=self._grouped)
 
-    def source_of(self, lanes: Lanes) -> Source:
+    def source_of(self, lanes: LaneOwners) -> NumberSource:
         """The random numbers of some lanes."""
         return self._source(lanes)
 
@@ -533,7 +533,7 @@ class Engine:
     def attempts_at(self, pending: Pending, owner: NDArray[np.intp], attempts: NDArray[np.int64]) -> Batch:
         """Return a batch of lanes: attempts ``(n,)`` at the scenes ``owner`` ``(n,)`` among the pending ones."""
         keys = attempt_keys(pending.key[owner], attempts)
-        return self.batch(self._source(Lanes(pending.seed[owner], pending.k[owner], attempts, keys)))
+        return self.batch(self._source(LaneOwners(pending.seed[owner], pending.k[owner], attempts, keys)))
 
     def note(self, number: int, lanes: int, passed: int, seconds: float) -> None:
         """Report to the meter the number of lanes that a check has tested."""
@@ -560,7 +560,7 @@ class Engine:
         """The report on a scene that was not found among a number of candidates."""
         return Exhausted(seed, k, attempts, "attempts", self.report(SceneTask(seed, k), attempts))
 
-    def batch(self, source: Source, *, grouped: bool = True, domain: Domain | None = None) -> Batch:
+    def batch(self, source: NumberSource, *, grouped: bool = True, domain: Domain | None = None) -> Batch:
         """Return a batch of lanes whose draws come from a source, in the plan's domain unless another one is given."""
         return Batch(
             self._scheduler if grouped else self._single,
@@ -631,9 +631,9 @@ class Engine:
     def _alone(self, task: SceneTask, attempt: int) -> Batch:
         return self.batch(self.source(task, attempt), grouped=False)
 
-    def source(self, task: SceneTask, attempt: int) -> Source:
+    def source(self, task: SceneTask, attempt: int) -> NumberSource:
         """The random numbers of one attempt at a scene."""
-        return self._source(Lanes.of(task.seed, task.k, attempt))
+        return self._source(LaneOwners.of(task.seed, task.k, attempt))
 
     def _error(self, check: Check, task: SceneTask, attempt: int) -> CandidateError:
         """Return the error of a lane, found by evaluating it alone."""
@@ -675,8 +675,8 @@ class Engine:
         return RejectionReport(count, rejection_rows(list(map(joined, zip(*batches, strict=True)))))
 
 
-def _attempts(task: SceneTask, numbers: NDArray[np.int64]) -> Lanes:
+def _attempts(task: SceneTask, numbers: NDArray[np.int64]) -> LaneOwners:
     """Lanes of some attempts at a scene."""
     seeds = np.repeat(seed_word(task.seed), len(numbers))
     scenes = np.repeat(np.int64(task.k), len(numbers))
-    return Lanes(seeds, scenes, numbers, attempt_keys(scene_keys(seeds, scenes), numbers))
+    return LaneOwners(seeds, scenes, numbers, attempt_keys(scene_keys(seeds, scenes), numbers))

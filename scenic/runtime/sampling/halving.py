@@ -26,7 +26,7 @@ from scenic.runtime.sampling.checks import Check, CollisionCheck
 from scenic.runtime.sampling.draw_blocks import CheckPiece, Reads, blocks, merged, pieces
 from scenic.runtime.sampling.engine import Engine, Plan
 
-__all__ = ["Divider", "Joint", "Tree", "any_passes", "may_fault"]
+__all__ = ["Divider", "JointCheck", "Tree", "any_passes", "may_fault"]
 
 CANDIDATES: Final = 128
 """Candidates on which it is estimated how often each check holds."""
@@ -69,7 +69,7 @@ _LEAST: Final = -600.0
 
 
 @dataclass(frozen=True, slots=True)
-class Joint:
+class JointCheck:
     """A check that is made of candidates for a part.
 
     Attributes:
@@ -101,7 +101,7 @@ class Tree:
     first: int
     stop: int
     draws: frozenset[int]
-    joints: tuple[Joint, ...]
+    joints: tuple[JointCheck, ...]
     chance: float
     halves: tuple["Tree", ...] | None = None
 
@@ -304,13 +304,13 @@ def _tree(plan: Plan, outlined: _Outline, leaf: int, always: bool) -> Tree:
 
 def _joints(
     own: Sequence[CheckPiece], numbers: Sequence[int], soft_places: dict[int, int]
-) -> tuple[Joint, ...]:
+) -> tuple[JointCheck, ...]:
     """The checks of pieces, with pairs of one check together again."""
     together: dict[int, list[Check]] = {}
     for piece in own:
         together.setdefault(piece.number, []).append(piece.check)
     return tuple(
-        Joint(check, numbers[number], soft_places.get(number))
+        JointCheck(check, numbers[number], soft_places.get(number))
         for number, checks in together.items()
         for check in merged(checks)
     )

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenic.dataclass import dataclass
-from scenic.graph.draws import Lanes, Source, attempt_keys
+from scenic.graph.draws import LaneOwners, NumberSource, attempt_keys
 from scenic.runtime.geometry.ragged import expand
 from scenic.runtime.sampling.composed import Composed
 from scenic.runtime.sampling.engine import Engine
@@ -285,12 +285,12 @@ class _Search:
                 break
         return passes
 
-    def _source(self, trees: Sequence[Tree], lanes: NDArray[np.intp], candidates: Numbers) -> Source:
+    def _source(self, trees: Sequence[Tree], lanes: NDArray[np.intp], candidates: Numbers) -> NumberSource:
         """The draws of candidates for parts: of each leaf those of its attempt."""
         pending = self._pending
         seeds, scenes, keys = pending.seed[lanes], pending.k[lanes], pending.key[lanes]
         sources = [
-            self._engine.source_of(Lanes(seeds, scenes, mine, attempt_keys(keys, mine)))
+            self._engine.source_of(LaneOwners(seeds, scenes, mine, attempt_keys(keys, mine)))
             for mine in (candidates - 1).T
         ]
         leaves = [leaf for tree in trees for leaf in range(tree.first, tree.stop)]

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from scenic.dataclass import dataclass
 from scenic.graph.batch import Batch
-from scenic.graph.draws import Lanes, Source, attempt_keys, scene_keys, seed_word
+from scenic.graph.draws import LaneOwners, NumberSource, attempt_keys, scene_keys, seed_word
 from scenic.runtime.geometry.ragged import expand
 from scenic.runtime.sampling.apart import Apart
 from scenic.runtime.sampling.components import Components
@@ -114,7 +114,7 @@ class PiecewiseEngine:
         if self._nodes:
             self._whole.make_ready(self._nodes)
 
-    def driven(self, source: Callable[[Lanes], Source]) -> "PiecewiseEngine":
+    def driven(self, source: Callable[[LaneOwners], NumberSource]) -> "PiecewiseEngine":
         """The same with other draws (`Engine.driven`)."""
         other = copy(self)
         other._whole = self._whole.driven(source)
@@ -333,12 +333,14 @@ class PiecewiseEngine:
         lanes = FinishedLanes(seeds, numbers, most, batch, alone, attempts, approximation)
         return [(lanes, lane) for lane in range(len(tasks))]
 
-    def _source(self, seeds: Sequence[int], numbers: Sequence[int], attempts: NDArray[np.int64]) -> Source:
+    def _source(
+        self, seeds: Sequence[int], numbers: Sequence[int], attempts: NDArray[np.int64]
+    ) -> NumberSource:
         words = np.array([seed_word(seed) for seed in seeds], dtype=np.uint64)
         scenes = np.array(numbers, dtype=np.int64)
         keys = scene_keys(words, scenes)
         sources = [
-            self._whole.source_of(Lanes(words, scenes, mine - 1, attempt_keys(keys, mine - 1)))
+            self._whole.source_of(LaneOwners(words, scenes, mine - 1, attempt_keys(keys, mine - 1)))
             for mine in attempts.T
         ]
         return Composed(sources, self._components.owner)

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from scenic.graph.draws import BOX, Counter, Floats, Lanes, Source, Words, each_of_distinct
+from scenic.graph.draws import BOX, Counter, Floats, LaneOwners, NumberSource, Words, each_of_distinct
 from scenic.graph.node import Graph
 from scenic.graph.points import PointSet
 
@@ -15,7 +15,7 @@ __all__ = ["driven"]
 class _Driven:
     """The source of lanes whose numbers are those of rows, as far as rows go."""
 
-    def __init__(self, points: PointSet, axes: Mapping[int, int], count: int, lanes: Lanes) -> None:
+    def __init__(self, points: PointSet, axes: Mapping[int, int], count: int, lanes: LaneOwners) -> None:
         self._points = points
         self._axes = axes
         self._count = count
@@ -44,7 +44,7 @@ class _Driven:
         return self._rest.words(addresses)
 
 
-def driven(points: PointSet, graph: Graph) -> Callable[[Lanes], Source]:
+def driven(points: PointSet, graph: Graph) -> Callable[[LaneOwners], NumberSource]:
     """Return a function that makes the sources of lanes: axes are numbered in the order of the graph."""
     axes = {graph.address(node): place for place, node in enumerate(graph.axes)}
     return lambda lanes: _Driven(points, {**axes, BOX: -1}, graph.dimension, lanes)

@@ -7,7 +7,7 @@ import numpy as np
 
 from scenic.dataclass import dataclass
 from scenic.language.spans import Span
-from scenic.runtime.sampling.checks import Part
+from scenic.runtime.sampling.checks import CheckPart
 
 CORRELATED: Final = 0.1
 """Copies count as parted when what they are and what they were correlate less."""
@@ -40,7 +40,7 @@ class RejectionRow:
         return f"{self.label} rejected every candidate{note}"
 
 
-def rejection_rows(parts: Sequence[Part]) -> tuple[RejectionRow, ...]:
+def rejection_rows(parts: Sequence[CheckPart]) -> tuple[RejectionRow, ...]:
     """The rows of a report, one for all parts of one label and place, without those that reject nothing.
 
     Where a value is missing, the check that it exists rejects the lane, rather than every check that reads it.

@@ -12,7 +12,7 @@ from scenic.runtime.sampling.check_planning import Outline
 from scenic.runtime.scenes.pickled_values import RecalledBatch
 from scenic.runtime.scenes.sampler import Sampler
 from scenic.runtime.scenes.saving import SavedScene, draws_of, source_of
-from scenic.runtime.scenes.scene import Family, Scene
+from scenic.runtime.scenes.scene import Scene, SceneFamily
 
 __all__ = ["Restoring"]
 
@@ -23,7 +23,7 @@ class Restoring:
     outline: Outline
     _program: Program
     _sampler: Sampler
-    _family: Family
+    _family: SceneFamily
     scene_class: ClassVar[type[Scene]] = Scene
     """The class of its scenes."""
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenic.graph.domain import Domain
-from scenic.graph.draws import Counter, Lanes, Points, Source, Words
+from scenic.graph.draws import Counter, LaneOwners, NumberSource, Points, Words
 from scenic.graph.node import Node
 from scenic.graph.points import PointSet
 from scenic.runtime.sampling.apart import OFTEN, rehearsed
@@ -294,12 +294,12 @@ class Sampler:
         # Every attempt is the same, unless the program's own functions draw random numbers.
         return min(limit, OPAQUE_ATTEMPTS if any(node.is_drawn for node in nodes) else 1)
 
-    def _fixing(self, source: Callable[[Lanes], Source]) -> Callable[[Lanes], Source]:
+    def _fixing(self, source: Callable[[LaneOwners], NumberSource]) -> Callable[[LaneOwners], NumberSource]:
         if not self._numbers and not self._words:
             return source
         return lambda lanes: self._fixed(source(lanes))
 
-    def _fixed(self, source: Source) -> Source:
+    def _fixed(self, source: NumberSource) -> NumberSource:
         return fixed_draws(self._numbers, self._words, source) if self._numbers or self._words else source
 
     def _engine_of(self, points: PointSet | None) -> Engine | PiecewiseEngine:
@@ -312,10 +312,10 @@ class Sampler:
 
 def _given(
     numbers: Mapping[int, NDArray[np.float64]], first: int, words: Mapping[int, Words] = MappingProxyType({})
-) -> Callable[[Lanes], Source]:
+) -> Callable[[LaneOwners], NumberSource]:
     """Return a function that makes the sources of lanes whose scenes, from ``first`` on, have these numbers and words."""
 
-    def source(lanes: Lanes) -> Source:
+    def source(lanes: LaneOwners) -> NumberSource:
         rows = lanes.scenes - first
         return Points(
             {place: column[rows] for place, column in numbers.items()},

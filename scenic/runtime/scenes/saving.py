@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenic.dataclass import dataclass
-from scenic.graph.draws import Counter, Points, Source
+from scenic.graph.draws import Counter, NumberSource, Points
 from scenic.graph.node import Graph, Node
 from scenic.language.errors import SerializationError
 from scenic.runtime.sampling.engine import FinishedLanes
@@ -119,7 +119,7 @@ def source_of(saved: SavedScene, graph: Graph) -> Points:
     return fixed_draws(saved.numbers, saved.words, Counter(np.zeros(1, dtype=np.uint64)))
 
 
-def fixed_draws(numbers: Mapping[int, float], words: Mapping[int, int], rest: Source) -> Points:
+def fixed_draws(numbers: Mapping[int, float], words: Mapping[int, int], rest: NumberSource) -> Points:
     """Return the source in which some draws are fixed in every lane."""
 
     def rows(values: Mapping[int, float], dtype: type[np.generic]) -> dict[int, NDArray[Any]]:

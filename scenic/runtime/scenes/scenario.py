@@ -47,7 +47,7 @@ from scenic.runtime.scenes.population import Populations
 from scenic.runtime.scenes.prefetching import SEED_BITS, Foreseen
 from scenic.runtime.scenes.sampler import Sampler
 from scenic.runtime.scenes.saving import draws_of
-from scenic.runtime.scenes.scene import Family, Scene
+from scenic.runtime.scenes.scene import Scene, SceneFamily
 from scenic.runtime.temporal.formulas import is_temporal
 
 if TYPE_CHECKING:
@@ -125,7 +125,7 @@ class Scenario(Generating):
         self._draw_names: dict[int, DrawName] | None = None
         self._idle_draws: frozenset[int] | None = None
         self._approximation: Approximation | None = None
-        self._family = Family(
+        self._family = SceneFamily(
             program,
             ego,
             Populations(self.objects, [*program.parameters.values(), *self._regions.values()], program.names),
@@ -677,7 +677,7 @@ class Scenario(Generating):
     def _number(self, item: object) -> int:
         """The place of an object, which is given by itself or by its place."""
         if not isinstance(item, int):
-            families: tuple[Family, ...] = (self._family, self._unconditioned["_family"])
+            families: tuple[SceneFamily, ...] = (self._family, self._unconditioned["_family"])
             sources = [enumerate(family.populations.objects) for family in families]
             return next(number for number, obj in chain(*sources) if obj is item)
         count = len(self.objects)

@@ -52,7 +52,7 @@ class Origin:
 
 
 @dataclass(frozen=True, slots=True)
-class Family:
+class SceneFamily:
     """The common ground of all scenes of a scenario.
 
     ``populations`` makes their objects, ``names`` are the variables that hold these, by the identities of the program's.
@@ -83,7 +83,7 @@ class Scene:
     _params: dict[str, Any] | None = None
     _pickled: tuple[bytes, bytes, bytes] | None = None
 
-    def __init__(self, found: FinishedLanes, lane: int, family: Family) -> None:
+    def __init__(self, found: FinishedLanes, lane: int, family: SceneFamily) -> None:
         self.found = found
         self.lane = lane
         self._family = family

@@ -14,7 +14,7 @@ from functools import partial
 from typing import Final, TypeAlias
 
 from scenic.runtime.temporal.formulas import Formula
-from scenic.runtime.temporal.normal_form import Junction, Literal, Next, Normal, Obligation, Until, normal
+from scenic.runtime.temporal.normal_form import Connective, Literal, Next, Normal, Obligation, Until, normal
 
 __all__ = ["FormulaMonitor", "Verdict"]
 
@@ -231,7 +231,7 @@ def _progressed(part: Normal, evaluate: Callable[[int], bool]) -> _Clauses:
     match part:
         case Literal(index, truth):
             return _TRUE if evaluate(index) is truth else _FALSE
-        case Junction(conjunction, parts):
+        case Connective(conjunction, parts):
             return _decided(conjunction, [partial(_progressed, each, evaluate) for each in parts])
         case Next(weak, later):
             return frozenset([frozenset([(weak, later)])])

@@ -8,7 +8,7 @@ from typing import TypeAlias
 from scenic.dataclass import dataclass
 from scenic.runtime.temporal.formulas import Atom, Formula
 
-__all__ = ["Junction", "Literal", "Next", "Normal", "Obligation", "Until", "normal"]
+__all__ = ["Connective", "Literal", "Next", "Normal", "Obligation", "Until", "normal"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -18,7 +18,7 @@ class Literal:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Junction:
+class Connective:
     conjunction: bool
     parts: "tuple[Normal, ...]"
 
@@ -38,7 +38,7 @@ class Until:
     goal: "Normal"
 
 
-Normal: TypeAlias = "Literal | Junction | Next | Until"
+Normal: TypeAlias = "Literal | Connective | Next | Until"
 
 
 class _Pool:
@@ -76,7 +76,7 @@ class _Pool:
         raise AssertionError(formula)
 
     def _junction(self, conjunction: bool, parts: tuple[Normal, ...]) -> Normal:
-        return self._one(Junction(conjunction, parts), conjunction, parts)
+        return self._one(Connective(conjunction, parts), conjunction, parts)
 
     def _until(self, weak: bool, held: "Normal | None", goal: Normal) -> Normal:
         return self._one(Until(weak, held, goal), weak, held, goal)

@@ -16,7 +16,7 @@ from functools import reduce
 from typing import Final, TypeAlias
 
 from scenic.runtime.temporal.formulas import Formula
-from scenic.runtime.temporal.normal_form import Junction, Literal, Next, Normal, Obligation, Until, normal
+from scenic.runtime.temporal.normal_form import Connective, Literal, Next, Normal, Obligation, Until, normal
 
 __all__ = ["Robustness", "joint_margin"]
 
@@ -106,7 +106,7 @@ def _made(
         case Literal(index, truth):
             value = margin(index)
             return {} if math.isnan(value) else {_NOW: value if truth else -value}
-        case Junction(conjunction, parts):
+        case Connective(conjunction, parts):
             each = [_progressed(item, margin, join, known) for item in parts]
             if not conjunction and all(clauses.keys() <= {_NOW} for clauses in each):
                 margins = [value for clauses in each for value in clauses.values()]

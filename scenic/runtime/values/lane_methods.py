@@ -22,14 +22,14 @@ from scenic.runtime.values.lazy import Lazy, defer
 from scenic.runtime.values.nodes import as_node, as_value
 from scenic.runtime.values.random_base import RandomBase, is_random
 
-__all__ = ["Lanes", "are_open", "node_over_lanes", "over_lanes"]
+__all__ = ["MethodLanes", "are_open", "node_over_lanes", "over_lanes"]
 
 _Method = TypeVar("_Method", bound=Callable[..., Any])
 
 _SHAPES: Mapping[Kind, tuple[int, ...]] = {Kind.SCALAR: (), Kind.VECTOR: (3,), Kind.ORIENTATION: (4,)}
 
 
-class Lanes:
+class MethodLanes:
     """The lanes in which a method of one object is evaluated.
 
     Attributes:
@@ -57,7 +57,7 @@ Operands = Callable[..., tuple[Sequence[Any], Any] | None]
 """From the arguments of a method, its random operands of the declared types and a fixed setting; ``None`` if that is random."""
 
 Evaluation = Callable[..., Column]
-"""From `Lanes`, an object, the setting, and a column ``(n, ...)`` for each operand, the column of results."""
+"""From `MethodLanes`, an object, the setting, and a column ``(n, ...)`` for each operand, the column of results."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -203,7 +203,7 @@ def _evaluated(call: Call, index: Column, *columns: Column) -> Column:
     for number, mine in _groups(np.broadcast_to(index, lanes)):
         if owners[number] is None:
             continue
-        part = Lanes(len(mine))
+        part = MethodLanes(len(mine))
         result[mine] = declaration.evaluation(
             part, owners[number], setting, *(np.ascontiguousarray(column[mine]) for column in spread)
         )

@@ -6,10 +6,10 @@ from typing import Any, Final, NamedTuple
 
 from scenic.language.errors import UnsupportedError
 
-__all__ = ["Library", "environment", "library"]
+__all__ = ["MetaDriveClasses", "environment", "library"]
 
 
-class Library(NamedTuple):
+class MetaDriveClasses(NamedTuple):
     """The classes of MetaDrive that are used."""
 
     BaseEnv: Any
@@ -31,10 +31,12 @@ _PLACES: Final = {
 """The modules of MetaDrive's classes."""
 
 
-def library() -> Library:
+def library() -> MetaDriveClasses:
     """Return MetaDrive's classes; raises `UnsupportedError` without them."""
     try:
-        return Library(**{name: getattr(import_module(module), name) for name, module in _PLACES.items()})
+        return MetaDriveClasses(
+            **{name: getattr(import_module(module), name) for name, module in _PLACES.items()}
+        )
     except ImportError as error:
         raise UnsupportedError(
             f"simulating with MetaDrive needs the packages metadrive-simulator and sumolib ({error})",
@@ -42,7 +44,7 @@ def library() -> Library:
         ) from error
 
 
-def environment(parts: Library, network: Path, **settings: Any) -> Any:
+def environment(parts: MetaDriveClasses, network: Path, **settings: Any) -> Any:
     """Return an environment of MetaDrive on a road network of SUMO, with one agent.
 
     Args:

@@ -24,7 +24,7 @@ from scenic.simulators.mujoco.jointed import Jointed
 from scenic.simulators.mujoco.library import library, quietly
 from scenic.simulators.mujoco.model import Builder
 
-__all__ = ["Settling", "Tally", "keep_poses", "require_rest"]
+__all__ = ["Settling", "SettlingTally", "keep_poses", "require_rest"]
 
 Floats = NDArray[np.float64]
 
@@ -39,7 +39,7 @@ _STILL: Final = ("static", "articulated", "link")
 _KINDS: Final = ("scenes", "stable", "objects", "fell", "tipped", "slid", "restless")
 
 
-class Tally:
+class SettlingTally:
     """Numbers of the candidates and objects that were simulated, in this process and in those that it has forked."""
 
     def __init__(self) -> None:
@@ -58,7 +58,7 @@ class Tally:
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Make the copy in another process an empty tally: a process that is not forked counts on its own."""
-        return Tally, ()
+        return SettlingTally, ()
 
     def __str__(self) -> str:
         return (
@@ -86,7 +86,7 @@ class Settling:
         self.seconds = seconds
         self.distance = distance
         self.angle = angle
-        self.tally = Tally()
+        self.tally = SettlingTally()
 
     def stays(self, things: Sequence[object]) -> bool:
         """Return whether none of the objects of a scene moves."""

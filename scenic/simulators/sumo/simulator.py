@@ -15,7 +15,7 @@ from scenic.language.errors import SimulationCreationError
 from scenic.runtime.scenes.scene import Scene
 from scenic.simulators.newtonian.simulator import NewtonianSimulation
 from scenic.simulators.sumo.library import convert, library
-from scenic.simulators.sumo.traffic import Body, Pose, Traffic
+from scenic.simulators.sumo.traffic import Pose, SumoBody, SumoTraffic
 
 __all__ = ["SumoSimulation", "SumoSimulator"]
 
@@ -29,8 +29,8 @@ class SumoSimulation(NewtonianSimulation):
         self._network = network
         self._sumo = library()
         self._started = False
-        self._traffic = Traffic(self._sumo)
-        self._bodies: dict[int, Body] = {}
+        self._traffic = SumoTraffic(self._sumo)
+        self._bodies: dict[int, SumoBody] = {}
         self._released: dict[int, float] = {}
         self._heights: dict[int, float] = {}
         super().__init__(scene, timestep=timestep, **options)

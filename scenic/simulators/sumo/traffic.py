@@ -9,7 +9,7 @@ from typing import Any, Final
 from scenic.dataclass import dataclass
 from scenic.language.errors import SimulationCreationError, SimulationError
 
-__all__ = ["Body", "Pose", "Traffic"]
+__all__ = ["Pose", "SumoBody", "SumoTraffic"]
 
 _AHEAD: Final = 5
 """Edges that a route has before a vehicle at least: drivers brake for what they see of it."""
@@ -31,7 +31,7 @@ class Pose:
 
 
 @dataclass(slots=True)
-class Body:
+class SumoBody:
     """A body by its name in SUMO; ``length`` is in metres.
 
     Attributes:
@@ -51,7 +51,7 @@ class Body:
     last: Mapping[int, Any] = field(default_factory=dict)
 
 
-class Traffic:
+class SumoTraffic:
     """The bodies in a running SUMO.
 
     SUMO's position of a body is the middle of its front, and its angles are in degrees clockwise from north.
@@ -68,7 +68,7 @@ class Traffic:
         self._speed, self._route_index = names.VAR_SPEED, names.VAR_ROUTE_INDEX
         self._next: dict[str, tuple[str, ...]] = {}
 
-    def add(self, name: str, size: tuple[float, float, float], max_speed: float) -> Body:
+    def add(self, name: str, size: tuple[float, float, float], max_speed: float) -> SumoBody:
         """Add a body that SUMO's drivers see.
 
         Args:
@@ -87,9 +87,9 @@ class Traffic:
         kinds.setMaxSpeed(name, max_speed)
         sumo.vehicle.add(name, "", typeID=name)
         sumo.vehicle.subscribe(name, [self._position, self._angle, self._speed, self._route_index])
-        return Body(name, length)
+        return SumoBody(name, length)
 
-    def put(self, body: Body, x: float, y: float, heading: float) -> None:
+    def put(self, body: SumoBody, x: float, y: float, heading: float) -> None:
         """Put a body's centre to a place, with a heading in radians; it is there after the next step."""
         if not body.entered:
             # A body that has never been on a lane must not be put elsewhere: libsumo would crash.
@@ -103,7 +103,7 @@ class Traffic:
         body.edges, body.speed_factor = 0, None
 
     def release(
-        self, body: Body, x: float, y: float, heading: float, speed: float, speed_factor: float
+        self, body: SumoBody, x: float, y: float, heading: float, speed: float, speed_factor: float
     ) -> None:
         """Put a body onto the nearest lane in its direction, and let SUMO drive it from there on, at its present speed (m/s).
 
@@ -126,7 +126,7 @@ class Traffic:
             self._sumo.vehicle.setSpeedFactor(body.name, speed_factor)
             body.speed_factor = speed_factor
 
-    def step(self, bodies: list[Body]) -> None:
+    def step(self, bodies: list[SumoBody]) -> None:
         """Advance SUMO by a step, and make the routes of those that it drives long enough."""
         self._sumo.simulationStep()
         results = self._sumo.vehicle.getAllSubscriptionResults()
@@ -140,7 +140,7 @@ class Traffic:
             if body.speed_factor is not None and body.last:
                 self._go_on(body, body.last[self._route_index])
 
-    def pose(self, body: Body) -> Pose | None:
+    def pose(self, body: SumoBody) -> Pose | None:
         """Return the pose of a body in SUMO; ``None`` for a body that has left the map at a dead end."""
         last = body.last
         if not last:
@@ -151,7 +151,7 @@ class Traffic:
         heading = math.pi - (math.pi - heading) % (2 * math.pi)
         return Pose(x + back * math.sin(heading), y - back * math.cos(heading), z, heading, last[self._speed])
 
-    def _move(self, body: Body, x: float, y: float, heading: float, mode: int) -> None:
+    def _move(self, body: SumoBody, x: float, y: float, heading: float, mode: int) -> None:
         angle = -math.degrees(heading) % 360
         self._sumo.vehicle.moveToXY(body.name, "", -1, x, y, angle, keepRoute=mode)
 
@@ -164,7 +164,7 @@ class Traffic:
 
     # Routes
 
-    def _go_on(self, body: Body, index: int) -> None:
+    def _go_on(self, body: SumoBody, index: int) -> None:
         """Make the route longer when its last edge comes near."""
         if index < body.edges - _AHEAD:
             return

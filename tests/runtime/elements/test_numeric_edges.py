@@ -7,7 +7,7 @@ import pytest
 import shapely
 import trimesh
 
-from scenic.graph.draws import Counter, Lanes, open_unit
+from scenic.graph.draws import Counter, LaneOwners, open_unit
 from scenic.runtime.geometry.containment import body_points
 from scenic.runtime.geometry.meshes import primitives
 from scenic.runtime.geometry.meshes.bodies import Body
@@ -153,7 +153,9 @@ def test_keys_differ_in_seed_scene_attempt_and_address() -> None:
     ]
     found = set()
     for seed, scene, attempt, place in variants:
-        (row,) = Counter(Lanes.of(seed, scene, attempt).keys).uniforms(np.array([place], dtype=np.uint64))
+        (row,) = Counter(LaneOwners.of(seed, scene, attempt).keys).uniforms(
+            np.array([place], dtype=np.uint64)
+        )
         found.add(float(row[0]))
     assert len(found) == len(variants)
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from scenic.language.errors import InvalidScenarioError, ScenicValueError, SpecifierError
-from scenic.runtime.elements.resolution import Resolution, class_defaults, resolution_of, resolve
+from scenic.runtime.elements.resolution import SpecifierResolution, class_defaults, resolution_of, resolve
 from scenic.runtime.elements.specifiers import Specifier
 from scenic.runtime.instances.objects import TWO_D_DEFAULTS, Object, OrientedPoint
 from scenic.runtime.values.values import Orientation, Vector
@@ -292,7 +292,7 @@ def test_defaults_that_are_shared_follow_what_is_given() -> None:
     assert plain.sensors is not turned.sensors is not shaped.sensors
 
 
-def shown(resolution: Resolution, specifiers: tuple[Specifier, ...]) -> list[Any]:
+def shown(resolution: SpecifierResolution, specifiers: tuple[Specifier, ...]) -> list[Any]:
     return [
         (step.specifier(specifiers).name, step.names, step.modifies)
         for step in resolution.steps

@@ -13,7 +13,7 @@ from scenic.runtime.geometry.contact import broadphase, depth, triangles
 from scenic.runtime.geometry.contact import cell_proofs as proofs
 from scenic.runtime.geometry.contact import scalar_bodies as single
 from scenic.runtime.geometry.contact.collision import Collider, collide
-from scenic.runtime.geometry.contact.crowd import Crowd, Rows
+from scenic.runtime.geometry.contact.crowd import Crowd, PropertyRows
 from scenic.runtime.geometry.contact.fronts import Fronts
 from scenic.runtime.geometry.contact.narrowphase import Solids, meshes_intersect
 from scenic.runtime.geometry.containment import body_containment as containment
@@ -334,7 +334,7 @@ def crowds() -> Lines:
             yield f"boxes {numbers(np.array(some.boxes(lanes)))}"
         yield f"over {numbers(some.position.over(np.arange(len(some)), slice(2, 5)))} {numbers(some.position.over(np.array([3]), slice(2, 5)))}"
         yield f"over {numbers(some.position.over(np.array([0, 1]), slice(2, 5)))} {numbers(some.position.over(np.array([1, 0]), slice(2, 5)))}"
-    yield f"rows {numbers(Rows.of([points(3, 1), points(1, 2)]).followed_by(Rows.of([points(2, 3)])).at(np.array([0, 1, 2]), np.array([2, 1, 1])))}"
+    yield f"rows {numbers(PropertyRows.of([points(3, 1), points(1, 2)]).followed_by(PropertyRows.of([points(2, 3)])).at(np.array([0, 1, 2]), np.array([2, 1, 1])))}"
 
 
 NOTCHED = shapely.Polygon(

@@ -16,7 +16,7 @@ from scipy.spatial.transform import Rotation
 
 from scenic.graph import quaternions
 from scenic.runtime.geometry.contact.collision import collide
-from scenic.runtime.geometry.contact.scalar_bodies import Placed, gap, is_near_way, meet, overlap, placed
+from scenic.runtime.geometry.contact.scalar_bodies import PlacedBody, gap, is_near_way, meet, overlap, placed
 from scenic.runtime.geometry.containment.distance import between
 from scenic.runtime.geometry.meshes import primitives
 from scenic.runtime.geometry.meshes.bodies import Body
@@ -113,7 +113,7 @@ class Moving:
     turn: Floats
     size: tuple[float, float, float]
 
-    def at(self, along: float) -> Placed:
+    def at(self, along: float) -> PlacedBody:
         x, y, z, w = self.turn.tolist()
         place = (self.start + along * self.way).tolist()
         return placed((place[0], place[1], place[2]), (x, y, z, w), self.size, mesh_of(self.shape))

@@ -8,7 +8,7 @@ import pytest
 import trimesh
 from scipy.spatial.transform import Rotation
 
-from scenic.runtime.geometry.contact.scalar_bodies import Placed, Triple, axes_of, placed
+from scenic.runtime.geometry.contact.scalar_bodies import PlacedBody, Triple, axes_of, placed
 from scenic.runtime.geometry.meshes import primitives
 from scenic.runtime.geometry.meshes.mesh import Mesh
 from scenic.runtime.geometry.poses import Floats
@@ -103,7 +103,7 @@ SIDES = (0.5, 1.2, 0.3)
 LEANING = Rotation.from_euler("ZXY", (-0.5, 0.4, 0.9))
 
 
-def leaning(place: Floats, size: Triple = SIDES, mesh: Mesh | None = None) -> Placed:
+def leaning(place: Floats, size: Triple = SIDES, mesh: Mesh | None = None) -> PlacedBody:
     x, y, z, w = LEANING.as_quat().tolist()
     return placed(triple(place), (x, y, z, w), size, primitives.box() if mesh is None else mesh)
 

@@ -12,7 +12,7 @@ import scenic
 from scenic.runtime.dynamics.margins import margin
 from scenic.runtime.geometry.contact.broadphase import boxes_overlap
 from scenic.runtime.geometry.contact.depth import convex_depth, convex_gap
-from scenic.runtime.geometry.contact.scalar_bodies import Placed, overlap, placed
+from scenic.runtime.geometry.contact.scalar_bodies import PlacedBody, overlap, placed
 from scenic.runtime.geometry.containment.distance import between as gaps
 from scenic.runtime.geometry.meshes import primitives
 from scenic.runtime.geometry.meshes.bodies import Body
@@ -246,7 +246,7 @@ def test_solids_that_touch_or_are_one_in_the_other() -> None:
     assert convex_depth(1e-3 * box, 1e-3 * (box + np.array((1.5, 0, 0)))) == pytest.approx(5e-4)
 
 
-def _normals(one: Placed, other: Placed) -> np.ndarray:
+def _normals(one: PlacedBody, other: PlacedBody) -> np.ndarray:
     faces = [*one.axes, *other.axes]
     edges = [np.cross(a, b) for a in one.axes for b in other.axes]
     ways = np.array([*faces, *edges])

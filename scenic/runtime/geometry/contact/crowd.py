@@ -17,7 +17,7 @@ _ELONGATED: Final = 2.5
 
 
 @dataclass(frozen=True, slots=True)
-class Rows:
+class PropertyRows:
     """One property of many bodies: the rows of all of them one after the other.
 
     Attributes:
@@ -32,7 +32,7 @@ class Rows:
     stride: Indices
 
     @classmethod
-    def of(cls, parts: Sequence[npt.NDArray[Any]]) -> "Rows":
+    def of(cls, parts: Sequence[npt.NDArray[Any]]) -> "PropertyRows":
         """Return the rows ``(n | 1, ...)`` of some bodies."""
         lengths = np.array([len(part) for part in parts], dtype=np.intp)
         return cls(
@@ -42,7 +42,7 @@ class Rows:
         )
 
     @classmethod
-    def stacked(cls, values: npt.NDArray[Any], bodies: int) -> "Rows":
+    def stacked(cls, values: npt.NDArray[Any], bodies: int) -> "PropertyRows":
         """Return the rows of several bodies that come one body after the other already: ``(bodies * lanes, ...)``, or
         ``(bodies, ...)`` where they are the same in all lanes, or ``(1, ...)`` where also in all bodies.
         """
@@ -65,13 +65,13 @@ class Rows:
             return whole.reshape(len(base), length, *self.values.shape[1:])[:, lanes]
         return self.at(bodies[:, None], np.arange(lanes.start, lanes.stop))
 
-    def mapped(self, function: Callable[[npt.NDArray[Any]], npt.NDArray[Any]]) -> "Rows":
+    def mapped(self, function: Callable[[npt.NDArray[Any]], npt.NDArray[Any]]) -> "PropertyRows":
         """Return the rows with ``function`` applied to the values of all of them."""
-        return Rows(function(self.values), self.base, self.stride)
+        return PropertyRows(function(self.values), self.base, self.stride)
 
-    def followed_by(self, others: "Rows") -> "Rows":
+    def followed_by(self, others: "PropertyRows") -> "PropertyRows":
         """Return the rows of these bodies, then those of the others."""
-        return Rows(
+        return PropertyRows(
             np.concatenate([self.values, others.values]),
             np.concatenate([self.base, others.base + len(self.values)]),
             np.concatenate([self.stride, others.stride]),
@@ -96,13 +96,13 @@ class Crowd:
     """
 
     meshes: tuple[Mesh, ...]
-    position: Rows
-    orientation: Rows
-    size: Rows
-    mesh: Rows
-    allow: Rows
-    lower: Rows
-    upper: Rows
+    position: PropertyRows
+    orientation: PropertyRows
+    size: PropertyRows
+    mesh: PropertyRows
+    allow: PropertyRows
+    lower: PropertyRows
+    upper: PropertyRows
     bounded: Indices
 
     def __len__(self) -> int:
@@ -123,13 +123,13 @@ class Crowd:
         lower, upper = zip(*corners, strict=True) if corners else ((), ())
         return cls(
             meshes,
-            Rows.of([item.position for item in poses]),
-            Rows.of([item.orientation for item in poses]),
-            Rows.of([item.size for item in poses]),
-            Rows.of(pose_parts),
-            Rows.of([body.allow for body in bodies]),
-            Rows.of(lower),
-            Rows.of(upper),
+            PropertyRows.of([item.position for item in poses]),
+            PropertyRows.of([item.orientation for item in poses]),
+            PropertyRows.of([item.size for item in poses]),
+            PropertyRows.of(pose_parts),
+            PropertyRows.of([body.allow for body in bodies]),
+            PropertyRows.of(lower),
+            PropertyRows.of(upper),
             np.where(has_bounds, np.cumsum(has_bounds) - 1, -1),
         )
 
@@ -144,7 +144,7 @@ class Crowd:
         mesh: Indices,
         allow: Booleans,
     ) -> "Crowd":
-        """Return the crowd of bodies whose columns are stacked already; each column is as `Rows.stacked` takes it.
+        """Return the crowd of bodies whose columns are stacked already; each column is as `PropertyRows.stacked` takes it.
 
         Args:
             bodies: their number.
@@ -158,13 +158,13 @@ class Crowd:
         """
         return cls(
             meshes,
-            Rows.stacked(position, bodies),
-            Rows.stacked(orientation, bodies),
-            Rows.stacked(size, bodies),
-            Rows.stacked(mesh, bodies),
-            Rows.stacked(allow, bodies),
-            Rows.of(()),
-            Rows.of(()),
+            PropertyRows.stacked(position, bodies),
+            PropertyRows.stacked(orientation, bodies),
+            PropertyRows.stacked(size, bodies),
+            PropertyRows.stacked(mesh, bodies),
+            PropertyRows.stacked(allow, bodies),
+            PropertyRows.of(()),
+            PropertyRows.of(()),
             np.full(bodies, -1),
         )
 
@@ -190,7 +190,7 @@ class Crowd:
         """Return the poses of ``(e,)`` combinations of body and lane."""
         return Poses(self.position.at(body, lane), self.orientation.at(body, lane), self.size.at(body, lane))
 
-    def radius(self) -> Rows:
+    def radius(self) -> PropertyRows:
         """Return the radii of spheres around the bodies."""
         return self.size.mapped(_half_diagonal)
 

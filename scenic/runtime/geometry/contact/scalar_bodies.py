@@ -20,7 +20,7 @@ SLACK: Final = 1e-6
 """Metres, and as a share of what is measured: more than rounding and the tolerances of containers and contacts come to."""
 
 
-class Placed(NamedTuple):
+class PlacedBody(NamedTuple):
     """A body in its place.
 
     ``axes`` are the unit vectors of its frame in the world, ``half`` the half extents along them; ``slack`` is how near
@@ -86,12 +86,12 @@ class Placed(NamedTuple):
 
 def placed(
     position: Triple, orientation: tuple[float, float, float, float], size: Triple, mesh: Mesh
-) -> Placed:
+) -> PlacedBody:
     """Return a body of a unit mesh, from its position, unit quaternion and size."""
     width, length, height = size
     scale = max(map(abs, position)) + max(size)
     half = (width / 2, length / 2, height / 2)
-    return Placed(position, axes_of(orientation), half, mesh, SLACK * max(1.0, scale))
+    return PlacedBody(position, axes_of(orientation), half, mesh, SLACK * max(1.0, scale))
 
 
 def axes_of(orientation: tuple[float, float, float, float]) -> Rows:
@@ -118,7 +118,7 @@ def is_near_way(start: Triple, end: Triple, middle: Triple, radius: float) -> bo
     return not x * x + y * y + z * z > radius * radius + slack
 
 
-def meet(one: Placed, other: Placed) -> bool | None:
+def meet(one: PlacedBody, other: PlacedBody) -> bool | None:
     """Return whether two bodies share a point; ``None`` where that takes a closer look."""
     gap, slack = _separation(one, other), one.slack + other.slack
     if gap > slack:
@@ -128,7 +128,7 @@ def meet(one: Placed, other: Placed) -> bool | None:
     return None
 
 
-def gap(one: Placed, other: Placed) -> float | None:
+def gap(one: PlacedBody, other: PlacedBody) -> float | None:
     """The least distance between points of two convex bodies, in metres, equal to that over lanes but for rounding.
 
     ``None`` where they may touch, or one is not convex.
@@ -141,7 +141,7 @@ def gap(one: Placed, other: Placed) -> float | None:
     return distance if distance > one.slack + other.slack else None
 
 
-def overlap(one: Placed, other: Placed) -> float:
+def overlap(one: PlacedBody, other: PlacedBody) -> float:
     """Return the distance, in metres, by which one of two boxes that meet has to be moved until they only touch; 0 if they are apart.
 
     Exact for boxes: the least way out of a body that is the sum of two boxes is across one of its faces, whose normals are the
@@ -150,7 +150,7 @@ def overlap(one: Placed, other: Placed) -> float:
     return max(0.0, -_separation(one, other))
 
 
-def _separation(one: Placed, other: Placed) -> float:
+def _separation(one: PlacedBody, other: PlacedBody) -> float:
     """Return the largest gap between the boxes' projections on an axis that may separate them; negative if they overlap on all.
 
     Axes: those of both boxes, and the products of two (Gottschalk, Lin and Manocha, "OBBTree", SIGGRAPH 1996).

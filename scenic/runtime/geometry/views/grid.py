@@ -19,7 +19,7 @@ _TURNS: Final = np.array([-2 * np.pi, 0.0, 2 * np.pi])
 
 
 @dataclass(frozen=True)
-class Rows:
+class RayRows:
     """Pieces of rows of rays, an entry for each.
 
     Attributes:
@@ -39,15 +39,15 @@ class Rows:
     step: Floats
     count: Indices
 
-    def where(self, chosen: Indices) -> "Rows":
+    def where(self, chosen: Indices) -> "RayRows":
         """The pieces of these numbers."""
-        return Rows(*(getattr(self, field.name)[chosen] for field in fields(self)))
+        return RayRows(*(getattr(self, field.name)[chosen] for field in fields(self)))
 
     def totals(self, lanes: int) -> Indices:
         """Numbers of rays of the lanes, ``(lanes,)``."""
         return np.bincount(self.lane, self.count, lanes).astype(np.intp)
 
-    def thinned(self, across: int, lanes: int) -> "Rows":
+    def thinned(self, across: int, lanes: int) -> "RayRows":
         """About ``across`` rows of ``across`` rays of each lane, evenly spread over all of its rays."""
         most = np.zeros(lanes, dtype=np.intp)
         np.maximum.at(most, self.lane, self.number + 1)
@@ -56,7 +56,7 @@ class Rows:
         rows = self.where(row_numbers)
         stride = np.maximum(rows.count // across, 1)
         offset = stride // 2
-        return Rows(
+        return RayRows(
             rows.lane,
             rows.number,
             rows.altitude,
@@ -78,7 +78,7 @@ class Rows:
             yield self.lane[part][owner], directions
 
 
-def rows_towards(views: Views, target: Extents, distance: Floats) -> Rows:
+def rows_towards(views: Views, target: Extents, distance: Floats) -> RayRows:
     """The rays of each view's grid whose directions are among those of the target.
 
     Args:
@@ -112,7 +112,7 @@ def rows_towards(views: Views, target: Extents, distance: Floats) -> Rows:
         last = np.minimum(np.floor((end - start) / step[:, None] - 0.5), across[:, None] - 1)
     piece, turn = np.nonzero(last >= first)
     first, last = first[piece, turn], last[piece, turn]
-    return Rows(
+    return RayRows(
         lane[piece],
         number[piece],
         altitude[piece],

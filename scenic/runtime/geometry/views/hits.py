@@ -29,7 +29,7 @@ _EDGE: Final = 1e-12
 
 
 @dataclass(frozen=True)
-class Placed:
+class SeenBodies:
     """A body over the lanes as the observers see it.
 
     Attributes:
@@ -84,7 +84,7 @@ class Placed:
         return result
 
 
-def place(body: Body, views: Views, lanes: Indices) -> Placed:
+def place(body: Body, views: Views, lanes: Indices) -> SeenBodies:
     """Return a body as seen in some of the lanes; the views have a row for each of these lanes."""
     poses = body.poses.take(lanes)
     count = len(lanes)
@@ -102,7 +102,7 @@ def place(body: Body, views: Views, lanes: Indices) -> Placed:
             turn[:, i, j] = total / size[:, i]
     choice = np.zeros(1, dtype=np.intp) if body.choice is None else body.choice
     mesh = np.broadcast_to(choice if len(choice) == 1 else choice[lanes], (count,))
-    return Placed(body.meshes, mesh, origin, turn)
+    return SeenBodies(body.meshes, mesh, origin, turn)
 
 
 def box_span(origins: Floats, directions: Floats) -> tuple[Floats, Floats]:

@@ -9,7 +9,7 @@ from scenic.dataclass import dataclass
 from scenic.runtime.geometry.meshes.bodies import Body
 from scenic.runtime.geometry.poses import Booleans, Floats, Indices
 from scenic.runtime.geometry.vectors import dot, length
-from scenic.runtime.geometry.views.hits import Placed, place
+from scenic.runtime.geometry.views.hits import SeenBodies, place
 from scenic.runtime.geometry.views.observers import DISTANCE_SLACK, Views
 
 
@@ -56,7 +56,7 @@ class Obstacles:
         self.lanes: list[Booleans] = []
         self._views = views
         self._all = lanes
-        self._placed: list[Placed | None] = []
+        self._placed: list[SeenBodies | None] = []
         way = middle - views.camera
         for occluder in occluders:
             active = occluder.active if len(occluder.active) == 1 else occluder.active[lanes]
@@ -70,7 +70,7 @@ class Obstacles:
                 self.lanes.append(near)
                 self._placed.append(None)
 
-    def placed(self, number: int) -> Placed:
+    def placed(self, number: int) -> SeenBodies:
         """Return occluder ``number`` of ``near`` as the observers see it."""
         known = self._placed[number]
         if known is None:

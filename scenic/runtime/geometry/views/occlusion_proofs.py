@@ -13,7 +13,7 @@ from scenic.runtime.geometry.meshes.inside import contains_points
 from scenic.runtime.geometry.meshes.mesh import Mesh
 from scenic.runtime.geometry.meshes.voxels import RESOLUTION, voxels
 from scenic.runtime.geometry.poses import Booleans, Floats, Indices
-from scenic.runtime.geometry.views.hits import Placed
+from scenic.runtime.geometry.views.hits import SeenBodies
 from scenic.runtime.geometry.views.occluders import Obstacles
 
 _MARGIN: Final = 1e-9
@@ -37,7 +37,7 @@ def boxes_hidden(corners: Floats, obstacles: Obstacles) -> Booleans:
     return hidden
 
 
-def shadowed(placed: Placed, lanes: Indices, directions: Floats, limits: Floats) -> Booleans:
+def shadowed(placed: SeenBodies, lanes: Indices, directions: Floats, limits: Floats) -> Booleans:
     """Return whether one convex part of a body is met by all rays of each lane before their limits, ``(m,)``.
 
     Args:

@@ -8,7 +8,7 @@ import math
 from collections.abc import Iterable, Sequence
 from typing import Final, NamedTuple
 
-from scenic.runtime.geometry.contact.scalar_bodies import Placed, Rows, Triple, is_near_way
+from scenic.runtime.geometry.contact.scalar_bodies import PlacedBody, Rows, Triple, is_near_way
 from scenic.runtime.geometry.views.observers import FULL_ANGLE_SLACK
 from scenic.runtime.geometry.views.seen_bodies import contains_own_centre
 
@@ -69,7 +69,7 @@ def _angular(radius: float, distance: float) -> float:
     return math.asin(radius / distance) if radius < distance else math.pi
 
 
-def sees_point(view: View, point: Triple, occluders: Iterable[Placed]) -> bool | None:
+def sees_point(view: View, point: Triple, occluders: Iterable[PlacedBody]) -> bool | None:
     """Return whether a view shows a point past others."""
     inside = view.contains(point)
     if not inside:
@@ -83,7 +83,7 @@ def sees_point(view: View, point: Triple, occluders: Iterable[Placed]) -> bool |
     return None if open_question else True
 
 
-def sees_body(view: View, target: Placed, occluders: Sequence[Placed]) -> bool | None:
+def sees_body(view: View, target: PlacedBody, occluders: Sequence[PlacedBody]) -> bool | None:
     """Return whether a view shows a body past others."""
     if target.mesh.derived(contains_own_centre) and sees_point(view, target.position, occluders):
         return True
@@ -96,7 +96,7 @@ def sees_body(view: View, target: Placed, occluders: Sequence[Placed]) -> bool |
     return None
 
 
-def _blocks(occluder: Placed, start: Triple, end: Triple) -> bool | None:
+def _blocks(occluder: PlacedBody, start: Triple, end: Triple) -> bool | None:
     """Return whether the way from one point to another meets the surface of a body; ``None`` if its box leaves that open."""
     if not is_near_way(start, end, occluder.position, occluder.radius):
         return False

@@ -17,8 +17,8 @@ from scenic.runtime.geometry.meshes.mesh import Mesh
 from scenic.runtime.geometry.poses import Booleans, Floats, Indices
 from scenic.runtime.geometry.ragged import first_of_each
 from scenic.runtime.geometry.vectors import length
-from scenic.runtime.geometry.views.grid import Rows, rows_towards
-from scenic.runtime.geometry.views.hits import Placed, place
+from scenic.runtime.geometry.views.grid import RayRows, rows_towards
+from scenic.runtime.geometry.views.hits import SeenBodies, place
 from scenic.runtime.geometry.views.observers import (
     DISTANCE_SLACK,
     Extents,
@@ -84,7 +84,7 @@ class SightBounds:
 
     def surroundings(
         self, views: Views, target: Body, occluders: Sequence[Occluder], lanes: Indices
-    ) -> tuple[Placed, Obstacles, Floats]:
+    ) -> tuple[SeenBodies, Obstacles, Floats]:
         """For the open lanes, whose views are given: the target, what may hide it, and its box's corners."""
         chosen = lanes[self.left]
         poses = target.poses.take(chosen)
@@ -112,7 +112,7 @@ def bounded(views: Views, target: Body, occluders: Sequence[Occluder], lanes: In
     return SightBounds(is_seen, left[meets], directions)
 
 
-def inside_body(placed: Placed) -> Booleans:
+def inside_body(placed: SeenBodies) -> Booleans:
     """Return whether the camera is inside the body, ``(n,)``."""
     result = np.zeros(len(placed.mesh), dtype=np.bool_)
     near = (np.abs(placed.origin) <= 0.5).all(axis=1)
@@ -128,7 +128,7 @@ def box_distance(origin: Floats, size: Floats) -> Floats:
     return length((origin - np.clip(origin, -0.5, 0.5)) * size)
 
 
-def _holds_centre(placed: Placed) -> Booleans:
+def _holds_centre(placed: SeenBodies) -> Booleans:
     known = np.array([mesh.derived(contains_own_centre) for mesh in placed.meshes], dtype=np.bool_)
     return known[placed.mesh]
 
@@ -170,7 +170,7 @@ class RaySearch:
         self._cast(self._rows, left, is_seen)
         return is_seen
 
-    def _cast(self, rows: Rows, wanted: Booleans, seen: Booleans) -> None:
+    def _cast(self, rows: RayRows, wanted: Booleans, seen: Booleans) -> None:
         """Cast the rays of the wanted lanes and mark those where one gets through."""
         rows = rows.where(np.flatnonzero(wanted[rows.lane]))
         for lane, directions in rows.rays(_RAYS):

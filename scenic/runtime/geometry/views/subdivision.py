@@ -21,7 +21,7 @@ from scenic.runtime.geometry.meshes.voxels import voxels
 from scenic.runtime.geometry.poses import Booleans, Floats, Indices
 from scenic.runtime.geometry.ragged import expand
 from scenic.runtime.geometry.vectors import cross, dot
-from scenic.runtime.geometry.views.hits import Placed
+from scenic.runtime.geometry.views.hits import SeenBodies
 from scenic.runtime.geometry.views.observers import CORNERS, DISTANCE_SLACK, Extents, Views
 from scenic.runtime.geometry.views.occluders import Occluder
 from scenic.runtime.geometry.views.occlusion_proofs import boxes_hidden, shadowed
@@ -214,7 +214,7 @@ def _first_cells(views: Views, target: Extents) -> _Cells:
     return _Cells(np.concatenate(lanes), np.concatenate(azimuths), np.concatenate(altitudes))
 
 
-def _cover(placed: Placed, target: Body, views: Views, lanes: Indices) -> tuple[Floats, Floats]:
+def _cover(placed: SeenBodies, target: Body, views: Views, lanes: Indices) -> tuple[Floats, Floats]:
     """Boxes that hold the target: corners in the view's frame ``(n, k, 8, 3)`` and distances ``(n, k)``, metres."""
     covers = [mesh.derived(voxels).cover for mesh in placed.meshes]
     width = max(len(cover) for cover in covers)
