@@ -283,7 +283,7 @@ class Simulation(ABC):
                 self.advance()
             self._tell_state(ActionsTaken())
             run.finish()
-            self.look()
+            self.conclude()
             assert run.ending is not None
             self._restore()
             self.result = SimulationResult(
@@ -333,6 +333,8 @@ class Simulation(ABC):
         own_place = context.program_place(error.__traceback__), context.filename
         if own_place[0] is None and self._run.failed_agent is not None:
             own_place = self._place_of_behavior(self._run.failed_agent, error)
+        elif getattr(error, "argument", None) is not None:
+            own_place = self._place_of_argument(error) or own_place
         if isinstance(error, Located):
             raise_place = error.span or place, error.filename or filename
             (error.span, error.filename), error.labels = reported(raise_place, own_place)
@@ -356,11 +358,26 @@ class Simulation(ABC):
 
     def _place_of_behavior(self, agent: Any, error: Exception) -> Place:
         """The argument of an agent's behavior that an exception is about; else the behavior, else the agent."""
-        behavior, context = agent.behavior, self._run.context
-        span = None if behavior is None else behavior._place
+        behavior = agent.behavior
+        return (None if behavior is None else self._place_in_call(behavior, error)) or self.place_of(agent)
+
+    def _place_of_argument(self, error: Exception) -> Place | None:
+        """The argument of the library's behavior that the program does, which an exception is about; ``None`` if that is not known."""
+        traceback = error.__traceback__
+        while traceback is not None:
+            behavior = running_in(traceback.tb_frame)
+            place = None if behavior is None else self._place_in_call(behavior, error)
+            if place is not None:
+                return place
+            traceback = traceback.tb_next
+        return None
+
+    def _place_in_call(self, behavior: Any, error: Exception) -> Place | None:
+        """The argument that an exception is about in the call that makes a behavior; the call where the argument is not seen in it."""
+        context, span = self._run.context, getattr(behavior, "_place", None)
         quotation = None if span is None else context.quote(span)
         if span is None or quotation is None:
-            return self.place_of(agent)
+            return None
         parameters = list(behavior._definition.signature.parameters)
         name = getattr(error, "argument", None)
         return argument_span(span, quotation[1], parameters, name), context.filename
@@ -486,6 +503,10 @@ class Simulation(ABC):
                     for name, sensor in obj.sensors.items()
                 }
                 obj.__dict__.pop("observations", None)
+
+    def conclude(self) -> None:
+        """Do what is due at the end, while the objects are in their last state."""
+        self.look()
 
     def look(self) -> None:
         """Let every sensor observe that has not been read in this step, since it may be read later."""

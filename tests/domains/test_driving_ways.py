@@ -198,6 +198,16 @@ def test_walkers_go_around_what_stands_there(folder: Path) -> None:
     assert max(speeds) <= 1.8
 
 
+def test_walkers_have_speeds_of_their_own(folder: Path) -> None:
+    walker = "new Pedestrian at (100, {y}), with behavior Walk([(130, {y})]), with regionContainedIn None\n"
+    text = "ego = " + "".join(walker.format(y=y) for y in (60, 70, 80))
+    first, last = (simulated(folder, text, steps=20).trajectory[state] for state in (0, -1))
+    speeds = [b.distanceTo(a) / 2 for a, b in zip(first, last, strict=True)]
+    assert len({round(speed, 6) for speed in speeds}) == 3
+    assert min(speeds) >= 0.8
+    assert max(speeds) <= 1.8
+
+
 def test_walkers_yield_to_cars(folder: Path) -> None:
     text = """
 behavior Cruise():

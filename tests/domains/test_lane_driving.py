@@ -308,10 +308,17 @@ ego = new Truck at (-60, -1.75), facing -90 deg, with speed 8, with regionContai
 def test_a_change_to_a_lane_of_the_other_direction_is_an_error(folder: Path) -> None:
     text = """
 section = network.laneSectionAt((300, 1.75))
-ego = new Car at (50, -1.75), facing -90 deg, with behavior LaneChangeBehavior(section)
+behavior Change():
+    do LaneChangeBehavior(section) for 3 seconds
+ego = new Car at (50, -1.75), facing -90 deg, with behavior {}
 """
-    with pytest.raises(InvalidScenarioError, match="other direction"):
-        simulated(folder, text)
+    for behavior, number in (("LaneChangeBehavior(section)", 4), ("Change()", 3)):
+        with pytest.raises(InvalidScenarioError, match="other direction") as caught:
+            simulated(folder, text.format(behavior))
+        span = caught.value.span
+        assert span is not None
+        assert span.line == number + 3
+        assert text.format(behavior).split("\n")[number][span.column : span.end_column] == "section"
 
 
 @pytest.mark.parametrize(

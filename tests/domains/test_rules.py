@@ -2,6 +2,7 @@
 
 import math
 import random
+import re
 from pathlib import Path
 from typing import Any
 
@@ -54,7 +55,11 @@ WEST = "ego = new Car at (80, 1.75), facing 90 deg, with speed 10, with behavior
 
 
 def test_a_red_light_is_halted_for_and_a_green_one_is_not(folder: Path) -> None:
-    red = places(simulated(folder, WEST.format(more=""), "light", 150, "{'states': {'7': 'red'}}"))
+    halted = simulated(folder, WEST.format(more=""), "light", 210, "{'states': {'7': 'red'}}")
+    ((step, number, words),) = halted.notes
+    assert (step, number) == (210, 0)
+    assert re.fullmatch(r"stands since \d+\.\d s, at the light '7'", words)
+    red = places(halted)
     # The front stops one metre before the line.
     assert 15.2 < red[-1, 0] - 2.25 < 17
     assert np.abs(np.diff(red[-10:, 0])).max() < 1e-6

@@ -63,16 +63,17 @@ behavior WalkPath(path, speed=1.4):
     take SetWalkingSpeedAction(0)
 
 
-behavior Walk(path, speed=Range(0.9, 1.8)):
+behavior Walk(path, speed: float = None):
     """Walk along a path, around what stands there and yielding to cars, and stop at its end.
 
     Arguments:
         path: a polyline, an element of the network with a centerline, or places in order.
-        speed: m/s.
+        speed: m/s; by default each walker has one of its own, from 0.9 to 1.8.
     """
+    pace = Range(0.9, 1.8) if speed is None else speed
     for place in places_of(path):
-        while not arrived(self, place, speed):
-            heading, now = walking_step(self, place, speed)
+        while not arrived(self, place, pace):
+            heading, now = walking_step(self, place, pace)
             take SetWalkingDirectionAction(heading, face=True), SetWalkingSpeedAction(now)
     take SetWalkingSpeedAction(0)
 

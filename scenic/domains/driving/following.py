@@ -49,6 +49,8 @@ _ON: Final = 0.3
 """Metres from its path within which a car is on it."""
 _LONG: Final = 60.0
 """Seconds after which it is noted why a car stands."""
+_WHILE: Final = 10.0
+"""Seconds of standing of which the reason is noted at the end of a simulation."""
 _STILL: Final = 0.3
 """Speed (m/s) below which a car stands."""
 _STOPPING: Final = 0.6
@@ -336,11 +338,20 @@ class Driver:
         now = self._simulation.currentTime * self._simulation.timestep
         if self.waiting == math.inf:
             self.waiting = now
-        elif now - self.waiting > _LONG and not self._has_noted:
-            self._has_noted = True
-            reason = self.reason_to_stand()
-            if reason is not None:
-                self._simulation.note(self._agent, f"stands since {self.waiting:.1f} s, {reason}")
+        elif now - self.waiting > _LONG:
+            self._note_standing()
+
+    def note_end(self) -> None:
+        """Note why a car stands at the end of a simulation, if that is not for a moment."""
+        now = self._simulation.currentTime * self._simulation.timestep
+        if now - self.waiting > _WHILE and not self.has_paused and self._agent.speed < _STILL:
+            self._note_standing()
+
+    def _note_standing(self) -> None:
+        reason = None if self._has_noted else self.reason_to_stand()
+        self._has_noted = True
+        if reason is not None:
+            self._simulation.note(self._agent, f"stands since {self.waiting:.1f} s, {reason}")
 
     def reason_to_stand(self) -> str | None:
         """Return the reason for which the car stands; ``None`` if nothing holds it."""

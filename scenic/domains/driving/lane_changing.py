@@ -44,6 +44,8 @@ _FARTHEST: Final = 500.0
 """Metres of way on which a car looks for a place to change lanes."""
 _MOST: Final = 9
 """Lanes to either side that are looked at."""
+_LANE: Final = "laneSectionToSwitch"
+"""The parameter of the behavior that gives the lane."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,12 +101,16 @@ class LaneChanger(LaneDriver):
     ) -> None:
         lane = section.lane if isinstance(section, LaneSection) else section
         if not isinstance(lane, Lane):
-            raise wrong_type("a lane or a lane section", lane, "the lane to change to")
+            error = wrong_type("a lane or a lane section", lane, "the lane to change to")
+            error.argument = _LANE
+            raise error
         if not oncoming and abs(turned_from(agent, lane)) > math.pi / 2:
-            raise InvalidScenarioError(
+            failure = InvalidScenarioError(
                 f"{lane.uid} leads in the other direction than the car that is to change to it",
                 help="to drive against the traffic, say `is_oppositeTraffic=True`; to turn round, use `UTurnBehavior`",
             )
+            failure.argument = _LANE
+            raise failure
         self._asked, self._duration = lane, duration
         self._end = math.inf
         self._own: Lane | None = None

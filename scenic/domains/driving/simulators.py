@@ -143,6 +143,12 @@ class DrivingSimulation(Simulation):
     _light_moment: tuple[int, int, int] | None = None
     _light_colors: Mapping[str, str] = MappingProxyType({})
 
+    def conclude(self) -> None:
+        """Note why cars stand at the end."""
+        for driver in self.drivers.values():
+            driver.note_end()
+        super().conclude()
+
     def _light_ahead(self, vehicle: Any, distance: float) -> Signal | None:
         """Return the first traffic light ahead of a vehicle within a distance in metres."""
         lane = vehicle._lane
