@@ -28,6 +28,7 @@ from scenic.cli.output import CLEAN
 from scenic.cli.sinks import check_page
 from scenic.dataclass import dataclass
 from scenic.formats.files import safe_name
+from scenic.language.word_sets import word_set
 
 if TYPE_CHECKING:
     from scenic.estimation.estimate import Asked, Estimate
@@ -57,12 +58,10 @@ _WITHOUT: Final = {
     _AGAINST: BatchPart("--against", refuses=frozenset({"at_most", "precision", "rare", "follow"})),
     _FOLDERS: BatchPart(
         "a folder in place of a program",
-        refuses=frozenset(
-            {
-                "count", "seed", "jobs", "dask", "resume", "accept_changes", "first", "requirements", "objective", "expression",
-                "threshold", "confidence", "precision", "at_most", "good", "power", "budget", "time_limit", "static", "simulator",
-                "max_steps", "rare", "follow", "hold", "against", "timestep", "swept", "scenario", "model", "mode_2d", "output",
-            }
+        refuses=word_set(
+            "count seed jobs dask resume accept_changes first requirements objective expression "
+            "threshold confidence precision at_most good power budget time_limit static simulator "
+            "max_steps rare follow hold against timestep swept scenario model mode_2d output"
         ),
     ),
 }  # fmt: skip

@@ -16,6 +16,7 @@ from scenic.compiler.traversal import position
 from scenic.dataclass import dataclass
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.names import NAMES, TRACKED
+from scenic.language.word_sets import word_set
 
 __all__ = [
     "PROVIDED",
@@ -28,23 +29,9 @@ __all__ = [
     "ScopeKind",
 ]
 
-_MODULE_ATTRIBUTES: Final = frozenset(
-    {
-        "__annotations__",
-        "__builtins__",
-        "__cached__",
-        "__class__",
-        "__debug__",
-        "__doc__",
-        "__file__",
-        "__loader__",
-        "__module__",
-        "__name__",
-        "__package__",
-        "__path__",
-        "__qualname__",
-        "__spec__",
-    }
+_MODULE_ATTRIBUTES: Final = word_set(
+    "__annotations__ __builtins__ __cached__ __class__ __debug__ __doc__ __file__ __loader__ "
+    "__module__ __name__ __package__ __path__ __qualname__ __spec__"
 )
 
 PROVIDED: Final = frozenset(dir(builtins)) | frozenset(NAMES) | frozenset(TRACKED) | _MODULE_ATTRIBUTES

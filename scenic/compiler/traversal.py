@@ -5,36 +5,13 @@ from collections.abc import Iterator
 from typing import Final
 
 from scenic.compiler import tree
+from scenic.language.word_sets import word_set
 
 __all__ = ["FIELDS", "first_position", "parts", "position", "walk"]
 
-_PLAIN: Final = frozenset(
-    {
-        "arg",
-        "attr",
-        "attributes",
-        "conversion",
-        "ctx",
-        "docstring",
-        "id",
-        "kind",
-        "kwd_attrs",
-        "level",
-        "module",
-        "moment",
-        "op",
-        "operator",
-        "ops",
-        "probability",
-        "property",
-        "rest",
-        "simple",
-        "simulation",
-        "specifier",
-        "type_comment",
-        "type_ignores",
-        "unit",
-    }
+_PLAIN: Final = word_set(
+    "arg attr attributes conversion ctx docstring id kind kwd_attrs level module moment op operator "
+    "ops probability property rest simple simulation specifier type_comment type_ignores unit"
 )
 """Fields that never hold parts, in any class of node."""
 

@@ -17,6 +17,7 @@ from scenic.ide.snapshot import Snapshot
 from scenic.language.diagnostics import Diagnostic, Edit
 from scenic.language.names import IMPORTABLE
 from scenic.language.spans import Span
+from scenic.language.word_sets import word_set
 from scenic.project.index import Project
 
 __all__ = ["Missing", "can_organize", "missing_imports", "organize_imports"]
@@ -31,29 +32,9 @@ _SHORT: Final[Mapping[str, str]] = {
 }
 """Modules by the names under which programs usually import them."""
 _COMMON: Final[Mapping[str, frozenset[str]]] = {
-    "math": frozenset(
-        [
-            "acos",
-            "asin",
-            "atan",
-            "atan2",
-            "ceil",
-            "copysign",
-            "degrees",
-            "dist",
-            "e",
-            "exp",
-            "floor",
-            "hypot",
-            "inf",
-            "isclose",
-            "log",
-            "log10",
-            "pi",
-            "radians",
-            "tan",
-            "tau",
-        ]
+    "math": word_set(
+        "acos asin atan atan2 ceil copysign degrees dist e exp floor hypot inf isclose log log10 pi "
+        "radians tan tau"
     ),
     "itertools": frozenset(
         ["chain", "combinations", "count", "cycle", "pairwise", "permutations", "product"]

@@ -2,6 +2,8 @@
 
 from typing import Final
 
+from scenic.language.word_sets import word_set
+
 __all__ = ["DRIVING_CLASSES", "DRIVING_NAMES", "FAMILIES", "LIBRARIES", "NEEDS_MAP", "how_to_get"]
 
 FAMILIES: Final = frozenset(
@@ -9,62 +11,28 @@ FAMILIES: Final = frozenset(
 )
 """Packages of other implementations; what is in them is their own affair."""
 
-LIBRARIES: Final = frozenset(
-    {
-        "scenic.domains",
-        "scenic.domains.driving",
-        "scenic.domains.driving.actions",
-        "scenic.domains.driving.behaviors",
-        "scenic.domains.driving.controllers",
-        "scenic.domains.driving.model",
-        "scenic.domains.driving.roads",
-        "scenic.domains.driving.simulators",
-        "scenic.domains.driving.workspace",
-        "scenic.simulators",
-        "scenic.simulators.carla",
-        "scenic.simulators.carla.actions",
-        "scenic.simulators.carla.behaviors",
-        "scenic.simulators.carla.blueprints",
-        "scenic.simulators.carla.controller",
-        "scenic.simulators.carla.model",
-        "scenic.simulators.carla.simulator",
-        "scenic.simulators.gta",
-        "scenic.simulators.gta.interface",
-        "scenic.simulators.gta.model",
-        "scenic.simulators.lgsvl",
-        "scenic.simulators.lgsvl.actions",
-        "scenic.simulators.lgsvl.behaviors",
-        "scenic.simulators.lgsvl.model",
-        "scenic.simulators.lgsvl.simulator",
-        "scenic.simulators.metadrive",
-        "scenic.simulators.metadrive.model",
-        "scenic.simulators.metadrive.simulator",
-        "scenic.simulators.newtonian",
-        "scenic.simulators.newtonian.driving_model",
-        "scenic.simulators.newtonian.model",
-        "scenic.simulators.newtonian.simulator",
-        "scenic.simulators.sumo",
-        "scenic.simulators.sumo.actions",
-        "scenic.simulators.sumo.behaviors",
-        "scenic.simulators.sumo.model",
-        "scenic.simulators.sumo.simulator",
-        "scenic.simulators.utils",
-        "scenic.simulators.utils.colors",
-        "scenic.simulators.webots",
-        "scenic.simulators.webots.actions",
-        "scenic.simulators.webots.guideways",
-        "scenic.simulators.webots.guideways.intersection",
-        "scenic.simulators.webots.guideways.model",
-        "scenic.simulators.webots.mars.model",
-        "scenic.simulators.webots.model",
-        "scenic.simulators.webots.road",
-        "scenic.simulators.webots.road.car_models",
-        "scenic.simulators.webots.road.model",
-        "scenic.simulators.webots.road.world",
-        "scenic.simulators.webots.simulator",
-        "scenic.simulators.xplane",
-        "scenic.simulators.xplane.model",
-    }
+LIBRARIES: Final = word_set(
+    "scenic.domains scenic.domains.driving scenic.domains.driving.actions "
+    "scenic.domains.driving.behaviors scenic.domains.driving.controllers "
+    "scenic.domains.driving.model scenic.domains.driving.roads scenic.domains.driving.simulators "
+    "scenic.domains.driving.workspace scenic.simulators scenic.simulators.carla "
+    "scenic.simulators.carla.actions scenic.simulators.carla.behaviors "
+    "scenic.simulators.carla.blueprints scenic.simulators.carla.controller "
+    "scenic.simulators.carla.model scenic.simulators.carla.simulator scenic.simulators.gta "
+    "scenic.simulators.gta.interface scenic.simulators.gta.model scenic.simulators.lgsvl "
+    "scenic.simulators.lgsvl.actions scenic.simulators.lgsvl.behaviors "
+    "scenic.simulators.lgsvl.model scenic.simulators.lgsvl.simulator scenic.simulators.metadrive "
+    "scenic.simulators.metadrive.model scenic.simulators.metadrive.simulator "
+    "scenic.simulators.newtonian scenic.simulators.newtonian.driving_model "
+    "scenic.simulators.newtonian.model scenic.simulators.newtonian.simulator scenic.simulators.sumo "
+    "scenic.simulators.sumo.actions scenic.simulators.sumo.behaviors scenic.simulators.sumo.model "
+    "scenic.simulators.sumo.simulator scenic.simulators.utils scenic.simulators.utils.colors "
+    "scenic.simulators.webots scenic.simulators.webots.actions scenic.simulators.webots.guideways "
+    "scenic.simulators.webots.guideways.intersection scenic.simulators.webots.guideways.model "
+    "scenic.simulators.webots.mars.model scenic.simulators.webots.model "
+    "scenic.simulators.webots.road scenic.simulators.webots.road.car_models "
+    "scenic.simulators.webots.road.model scenic.simulators.webots.road.world "
+    "scenic.simulators.webots.simulator scenic.simulators.xplane scenic.simulators.xplane.model"
 )
 """The modules that worlds are commonly taken from."""
 
@@ -96,15 +64,10 @@ DRIVING_NAMES: Final = DRIVING_CLASSES | {
 }
 """Names of the driving domain that programs use most."""
 
-NEEDS_MAP: Final = frozenset(
-    {
-        "scenic.domains.driving.model",
-        "scenic.simulators.carla.model",
-        "scenic.simulators.lgsvl.model",
-        "scenic.simulators.metadrive.model",
-        "scenic.simulators.newtonian.driving_model",
-        "scenic.simulators.sumo.model",
-    }
+NEEDS_MAP: Final = word_set(
+    "scenic.domains.driving.model scenic.simulators.carla.model scenic.simulators.lgsvl.model "
+    "scenic.simulators.metadrive.model scenic.simulators.newtonian.driving_model "
+    "scenic.simulators.sumo.model"
 )
 """World models that read the parameter `map` while they are loaded."""
 

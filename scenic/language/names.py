@@ -28,6 +28,7 @@ from scenic.language.types import (
     VECTOR,
     Type,
 )
+from scenic.language.word_sets import word_set
 
 __all__ = [
     "ANGLE_METHODS",
@@ -607,51 +608,20 @@ ANGLE_METHODS: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType(
 )
 """Parameters of methods whose numbers are angles in radians."""
 
-LIFTED_METHODS: Final = frozenset(
-    {
-        # Vectors
-        "altitudeTo",
-        "angleTo",
-        "angleWith",
-        "azimuthTo",
-        "cross",
-        "distanceTo",
-        "dot",
-        "norm",
-        "normalized",
-        "offsetLocally",
-        "offsetRadially",
-        "offsetRotated",
-        "rotatedBy",
-        "sphericalCoordinates",
-        # Orientations
-        "approxEq",
-        "localAnglesFor",
-        # Road networks and their elements
-        "crossingAt",
-        "elementAt",
-        "intersectionAt",
-        "laneAt",
-        "laneGroupAt",
-        "laneSectionAt",
-        "roadAt",
-        "sectionAt",
-        "shoulderAt",
-        "sidewalkAt",
-        # Points and objects
-        "canSee",
-        "containsPoint",
-        "distancePast",
-        "intersects",
-        "relativePosition",
-        "relativize",
-        "toHeading",
-        "toOrientation",
-        "toVector",
-        # Regions
-        "containsObject",
-        "containsRegion",
-    }
+LIFTED_METHODS: Final = word_set(
+    # Vectors
+    "altitudeTo angleTo angleWith azimuthTo cross distanceTo dot norm normalized offsetLocally "
+    "offsetRadially offsetRotated rotatedBy sphericalCoordinates "
+    # Orientations
+    "approxEq localAnglesFor "
+    # Road networks and their elements
+    "crossingAt elementAt intersectionAt laneAt laneGroupAt laneSectionAt roadAt sectionAt shoulderAt "
+    "sidewalkAt "
+    # Points and objects
+    "canSee containsPoint distancePast intersects relativePosition relativize toHeading toOrientation "
+    "toVector "
+    # Regions
+    "containsObject containsRegion "
 )
 """Methods of vectors, orientations, objects and regions whose calls in a condition may become part of the graph."""
 

@@ -4,32 +4,16 @@ import ast
 from typing import Final
 
 from scenic.compiler import tree as scenic
+from scenic.language.word_sets import word_set
 from scenic.migration.moved import LIBRARY_NAMES
 from scenic.migration.pieces import TextPiece
 from scenic.migration.texts import TextEdit
 
 __all__ = ["rewrite_expressions"]
 
-_OF_TEXTS: Final = frozenset(
-    [
-        "split",
-        "replace",
-        "endswith",
-        "startswith",
-        "format",
-        "strip",
-        "lstrip",
-        "rstrip",
-        "lower",
-        "upper",
-        "encode",
-        "partition",
-        "rpartition",
-        "find",
-        "rfind",
-        "removesuffix",
-        "removeprefix",
-    ]
+_OF_TEXTS: Final = word_set(
+    "split replace endswith startswith format strip lstrip rstrip lower upper encode partition "
+    "rpartition find rfind removesuffix removeprefix"
 )
 """Methods of strings that paths lack, or understand otherwise."""
 

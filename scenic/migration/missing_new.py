@@ -9,6 +9,7 @@ from typing import Final
 
 from scenic.compiler.tokens import NAME
 from scenic.dataclass import dataclass
+from scenic.language.word_sets import word_set
 from scenic.migration.class_names import ModuleNames
 from scenic.migration.texts import Token
 
@@ -19,45 +20,12 @@ _NOT_MADE: Final = frozenset(
 )
 """The tokens after which a class is not made into an object: those of the rule, and those that no object can precede."""
 
-_BINDING: Final = frozenset(
-    [
-        "new",
-        ".",
-        "class",
-        "constructor",
-        "def",
-        "behavior",
-        "monitor",
-        "scenario",
-        "global",
-        "nonlocal",
-        "del",
-        "as",
-        "import",
-        "for",
-        "override",
-        "mutate",
-    ]
+_BINDING: Final = word_set(
+    "new . class constructor def behavior monitor scenario global nonlocal del as import for override mutate"
 )
 """The tokens before a name that is bound, imported or made already."""
 
-_SURE: Final = frozenset(
-    [
-        "at",
-        "on",
-        "offset",
-        "left",
-        "right",
-        "ahead",
-        "behind",
-        "beyond",
-        "facing",
-        "apparently",
-        "following",
-        "with",
-        "using",
-    ]
-)
+_SURE: Final = word_set("at on offset left right ahead behind beyond facing apparently following with using")
 """The first words of specifiers that no operator begins with, for a class whose definition is known."""
 
 _OTHER: Final = frozenset(["in", "visible", "not"])

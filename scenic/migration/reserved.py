@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 from typing import Final
 
 from scenic.compiler.tokens import FSTRING_END, NAME, NUMBER, STRING
+from scenic.language.word_sets import word_set
 from scenic.migration.texts import TextEdit, Token, first_of_line
 
 __all__ = ["renamings"]
@@ -11,41 +12,9 @@ __all__ = ["renamings"]
 KEYWORDS: Final = frozenset(["new", "at", "by", "do", "of", "on", "to", "until", "require"])
 CONVERSIONS: Final = frozenset(["int", "float", "str"])
 
-_NO_OPERANDS: Final = KEYWORDS | frozenset(
-    [
-        "and",
-        "or",
-        "not",
-        "if",
-        "else",
-        "elif",
-        "in",
-        "is",
-        "for",
-        "while",
-        "return",
-        "yield",
-        "lambda",
-        "assert",
-        "raise",
-        "del",
-        "with",
-        "as",
-        "from",
-        "import",
-        "await",
-        "async",
-        "except",
-        "finally",
-        "try",
-        "global",
-        "nonlocal",
-        "def",
-        "class",
-        "pass",
-        "break",
-        "continue",
-    ]
+_NO_OPERANDS: Final = KEYWORDS | word_set(
+    "and or not if else elif in is for while return yield lambda assert raise del with as from "
+    "import await async except finally try global nonlocal def class pass break continue"
 )
 """Words that are no operands themselves."""
 

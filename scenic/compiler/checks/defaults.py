@@ -8,25 +8,12 @@ from typing import Final
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.context import CheckContext
 from scenic.language.diagnostics import Diagnostic
+from scenic.language.word_sets import word_set
 
 __all__ = ["check_defaults"]
 
-_MUTATING: Final = frozenset(
-    {
-        "add",
-        "append",
-        "clear",
-        "discard",
-        "extend",
-        "insert",
-        "pop",
-        "popitem",
-        "remove",
-        "reverse",
-        "setdefault",
-        "sort",
-        "update",
-    }
+_MUTATING: Final = word_set(
+    "add append clear discard extend insert pop popitem remove reverse setdefault sort update"
 )
 """Methods of lists, dictionaries and sets that change them."""
 

@@ -16,6 +16,7 @@ from scenic.language.libraries import DRIVING_CLASSES, DRIVING_NAMES
 from scenic.language.properties import properties_of
 from scenic.language.spans import Span
 from scenic.language.spelling import distance
+from scenic.language.word_sets import word_set
 
 __all__ = ["Meant", "keyword_meant", "known_elsewhere"]
 
@@ -46,21 +47,8 @@ _FUNCTIONS: Final[Mapping[str, str]] = MappingProxyType(
     }
 )  # fmt: skip
 """Functions of other libraries, with those of the language that take the same arguments."""
-_CHOICES: Final = frozenset(
-    (
-        "Categorical",
-        "Choice",
-        "OneOf",
-        "RandomChoice",
-        "choice",
-        "choose",
-        "one_of",
-        "oneof",
-        "pick",
-        "random_choice",
-        "select",
-        "uniform",
-    )
+_CHOICES: Final = word_set(
+    "Categorical Choice OneOf RandomChoice choice choose one_of oneof pick random_choice select uniform"
 )
 """Words for a random choice among options."""
 _MODULES: Final[Mapping[str, str]] = MappingProxyType(

@@ -14,6 +14,7 @@ from scenic.language.diagnostics import Diagnostic, Edit, Fix
 from scenic.language.libraries import NEEDS_MAP
 from scenic.language.spans import Span
 from scenic.language.statements import Place
+from scenic.language.word_sets import word_set
 
 __all__ = ["RULES", "check_maps"]
 
@@ -33,15 +34,9 @@ _DRAWS: Final[Mapping[str, str]] = MappingProxyType(
     }
 )
 """Draws of Python's generators, and the distributions of the language, which take the same arguments."""
-_CLOCKS: Final = frozenset(
-    {
-        "time.time",
-        "time.monotonic",
-        "time.perf_counter",
-        "datetime.datetime.now",
-        "datetime.datetime.today",
-        "datetime.date.today",
-    }
+_CLOCKS: Final = word_set(
+    "time.time time.monotonic time.perf_counter datetime.datetime.now datetime.datetime.today "
+    "datetime.date.today"
 )
 _PARAMETERS: Final = {"Uniform(*{})": 1, "Range(0, 1)": 0}
 """The numbers of arguments that the replacement takes, where it is not two."""

@@ -9,28 +9,16 @@ import numpy as np
 
 from scenic.language.keywords import HARD_KEYWORDS
 from scenic.language.properties import CLASSES
+from scenic.language.word_sets import word_set
 from scenic.runtime.instances.objects import Object, OrientedPoint, Point
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.spaces import Everywhere
 from scenic.runtime.shapes.shapes import PrimitiveShape, Shape
 from scenic.runtime.values.values import Orientation, Vector
 
-_LEFT_OUT = frozenset(
-    {
-        "allowCollisions",
-        "position",
-        "orientation",
-        "heading",
-        "mutator",
-        "mutationScale",
-        "observations",
-        "sensors",
-        "behavior",
-        "lastActions",
-        "present",
-        "regionContainedIn",
-        "requireVisible",
-    }
+_LEFT_OUT = word_set(
+    "allowCollisions position orientation heading mutator mutationScale observations sensors "
+    "behavior lastActions present regionContainedIn requireVisible"
 )
 """Properties that the placement gives, that follow from others, or that would add requirements again: the requirements of the scene were tested when it was sampled."""
 
