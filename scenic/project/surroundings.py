@@ -8,11 +8,9 @@ from scenic.compiler.semantics.model import Model
 from scenic.compiler.semantics.modules import FoundModule, Module, ModuleKind, Modules
 from scenic.compiler.surroundings import Surroundings, SurroundingsOf
 from scenic.language.diagnostics import Diagnostic
-from scenic.project.appearances import appearance_findings
 from scenic.project.imports import Imports
 from scenic.project.index import Project
-from scenic.project.map_checks import map_findings
-from scenic.project.texture_checks import texture_findings
+from scenic.project.named_assets import asset_findings
 
 __all__ = ["surroundings_in"]
 
@@ -51,7 +49,4 @@ class _Surroundings:
 
     def findings(self) -> Iterator[Diagnostic]:
         yield from self._imports.findings()
-        module = self._model.module
-        yield from map_findings(module.tree, module.source)
-        yield from texture_findings(module.resolution, module.source)
-        yield from appearance_findings(module.resolution, module.source)
+        yield from asset_findings(self._model.module)
