@@ -10,7 +10,7 @@ from copy import copy
 from dataclasses import field
 from enum import StrEnum
 from functools import cached_property
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 from scenic.compiler.traversal import position
 from scenic.dataclass import dataclass
@@ -125,12 +125,11 @@ class Scope:
         return None
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Reference:
+class Reference(NamedTuple):
     """One ``ast.Name`` of the program: where it stands and what it means (``None``: nothing that the text binds)."""
 
-    node: ast.Name = field(repr=False)
-    scope: Scope = field(repr=False)
+    node: ast.Name
+    scope: Scope
     binding: Binding | None
 
 

@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import field
 from enum import StrEnum
+from functools import cached_property
 from types import MappingProxyType
 from typing import Any, Final
 
@@ -60,7 +61,7 @@ class NameKind(StrEnum):
     VALUE = "value"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class Name:
     """One provided name.
 
@@ -101,7 +102,7 @@ class Name:
     noun: str | None = None
     syntax: str | None = None
 
-    @property
+    @cached_property
     def accepted(self) -> Mapping[str, tuple[Type, ...]]:
         """The types of which the value of each parameter must have one, as far as they are declared."""
         return {
@@ -109,7 +110,7 @@ class Name:
             **self.takes,
         }
 
-    @property
+    @cached_property
     def parameters(self) -> tuple[str, ...]:
         """The names of its positional parameters, as far as the signature names them."""
         inside = self.signature.partition("(")[2].removesuffix(")")

@@ -26,6 +26,13 @@ _DEEPEST: Final = 20
 _PROPERTIES: Final = frozenset(
     name for cls in CLASSES for name, entry in properties_of(cls).items() if entry.angle
 )
+_OF_SPECIFIERS: Final = frozenset(
+    name for name, declared in SPECIFIERS.items() if any(each.angle for each in declared.operands)
+)
+_OF_OPERATORS: Final = frozenset(
+    name for name, declared in OPERATORS.items() if any(each.angle for each in declared.operands)
+)
+"""Specifiers and operators with operands that are angles."""
 _COMPOSING: Final = frozenset({"relative to", "offset by"})
 """Operators whose operands are angles where the result is one."""
 
@@ -34,7 +41,7 @@ def _specifier(node: scenic.SpecifierPhrase, _scope: Scope, context: CheckContex
     if node.property is not None:
         if node.property in _PROPERTIES:
             yield from _found(context, node.operands[0], f"`{node.property}` is")
-    elif node.specifier in SPECIFIERS:
+    elif node.specifier in _OF_SPECIFIERS:
         yield from _operands(context, node.operands, SPECIFIERS[node.specifier].operands)
 
 
@@ -42,7 +49,7 @@ def _operation(node: scenic.Operation, _scope: Scope, context: CheckContext) -> 
     inner = node.operands[0] if node.operands else None
     if node.operator == "deg" and isinstance(inner, scenic.Operation) and inner.operator == "deg":
         yield context.warning("SC307", "this angle is converted from degrees twice", node, "write `deg` once")
-    if node.operator in OPERATORS:
+    if node.operator in _OF_OPERATORS:
         yield from _operands(context, node.operands, OPERATORS[node.operator].operands)
 
 

@@ -2,13 +2,11 @@
 
 import ast
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
 from typing import Any, Final, NamedTuple
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.scopes import Scope, ScopeKind
 from scenic.compiler.traversal import position
-from scenic.dataclass import dataclass
 from scenic.language.statements import Place
 
 __all__ = ["DYNAMIC", "Block", "Where", "blocks", "in_compose", "where_of"]
@@ -17,8 +15,7 @@ DYNAMIC: Final = frozenset({Place.BEHAVIOR, Place.MONITOR, Place.COMPOSE})
 """Places where statements run step by step during a simulation."""
 
 
-@dataclass(frozen=True, slots=True)
-class Where:
+class Where(NamedTuple):
     """The surroundings of a node. ``function`` is ``None``, ``"def"``, ``"async def"`` or ``"lambda"``, within ``place``."""
 
     place: Place = Place.TOP
@@ -51,7 +48,7 @@ def blocks(tree: ast.Module, statements: Iterable[ast.stmt]) -> Iterator[Block]:
 
 def _inner(node: object, where: Where) -> Iterable[Block]:
     """The blocks directly in a statement."""
-    inner = replace(where, in_class_block=False) if where.in_class_block else where
+    inner = where._replace(in_class_block=False) if where.in_class_block else where
     match node:
         case ast.FunctionDef() | ast.AsyncFunctionDef():
             word = "def" if isinstance(node, ast.FunctionDef) else "async def"
@@ -70,10 +67,10 @@ def _inner(node: object, where: Where) -> Iterable[Block]:
             yield Block(node, node.setup or [], Where(Place.SETUP))
             yield Block(node, node.compose or [], Where(Place.COMPOSE))
         case ast.For() | ast.AsyncFor() | ast.While():
-            yield Block(node, node.body, replace(inner, in_loop=True))
+            yield Block(node, node.body, inner._replace(in_loop=True))
             yield Block(node, node.orelse, inner)
         case scenic.TryInterrupt():
-            within = replace(inner, interruptible=True)
+            within = inner._replace(interruptible=True)
             yield Block(node, node.body, within)
             for interrupt in node.interrupts:
                 yield Block(interrupt, interrupt.body, within)
@@ -93,7 +90,7 @@ def _inner(node: object, where: Where) -> Iterable[Block]:
         case ast.With() | ast.AsyncWith():
             yield Block(node, node.body, inner)
         case scenic.ErrorStatement():
-            yield Block(node, node.body, replace(inner, broken=True))
+            yield Block(node, node.body, inner._replace(broken=True))
         case ast.Match():
             for case in node.cases:
                 yield Block(case, case.body, inner)

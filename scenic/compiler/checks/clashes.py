@@ -2,6 +2,7 @@
 
 import ast
 from collections.abc import Iterator
+from functools import partial
 from typing import Final
 
 from scenic.compiler import tree as scenic
@@ -26,12 +27,12 @@ def _class(node: ast.ClassDef, _scope: Scope, context: CheckContext) -> Iterator
     for item in node.body:
         match item:
             case scenic.PropertyDef(name=name, attributes=attributes, value=value):
-                place = word_span(context.source, item, name)
+                place = partial(word_span, context.source, item, name)
                 if "additive" in attributes and "dynamic" in attributes:
                     yield context.error(
                         "SC401",
                         f"the property `{name}` cannot be both additive and dynamic",
-                        place,
+                        place(),
                         "keep one of the two words",
                     )
                 # Programs of the plane define the heading.
@@ -39,7 +40,7 @@ def _class(node: ast.ClassDef, _scope: Scope, context: CheckContext) -> Iterator
                     yield context.error(
                         "SC401",
                         f"the property `{name}` is final and cannot be defined again",
-                        place,
+                        place(),
                         "define the properties that it follows from: `parentOrientation`, `yaw`, `pitch` or `roll`"
                         if name == "orientation"
                         else "use another name",
@@ -49,7 +50,7 @@ def _class(node: ast.ClassDef, _scope: Scope, context: CheckContext) -> Iterator
                     yield context.error(
                         "SC402",
                         f"`{name}` is {what} of `{base}` and cannot be a property",
-                        place,
+                        place(),
                         "use another name",
                     )
                 if base == "Object":

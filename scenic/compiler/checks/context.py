@@ -1,6 +1,7 @@
 """The input of every rule: the program, what its names mean, and the making of diagnostics."""
 
 import ast
+from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import Any, Final
@@ -88,14 +89,13 @@ class CheckContext(Model):
 
     def _named_in(self, function: str) -> Iterator[str | None]:
         """The names of attributes that calls of a function of Python name; ``None`` for computed ones."""
-        for node, _ in self.nodes(ast.Call):
-            match node:
-                case ast.Call(func=ast.Name(id=name), args=[_, ast.Constant(value=str(attribute)), *_]) if (
-                    name == function
-                ):
-                    yield attribute
-                case ast.Call(func=ast.Name(id=name)) if name == function:
-                    yield None
+        for node, _ in self.nodes(ast.Call) if function in self._mentions else ():
+            if isinstance(node.func, ast.Name) and node.func.id == function:
+                match node.args:
+                    case [_, ast.Constant(value=str(attribute)), *_]:
+                        yield attribute
+                    case _:
+                        yield None
 
     @cached_property
     def asked_attributes(self) -> frozenset[str]:
@@ -171,16 +171,15 @@ class CheckContext(Model):
         }
 
     @cached_property
-    def _mentions(self) -> Mapping[str, list[tuple[int, int]]]:
-        places: dict[str, list[tuple[int, int]]] = {}
-        for node in self.resolution.references:
-            assert isinstance(node, ast.Name)
-            places.setdefault(node.id, []).append(position(node))
-        return places
+    def _mentions(self) -> Mapping[str, list[ast.AST]]:
+        nodes: defaultdict[str, list[ast.AST]] = defaultdict(list)
+        for reference in self.resolution.references.values():
+            nodes[reference.node.id].append(reference.node)
+        return nodes
 
     def mentions(self, name: str) -> list[tuple[int, int]]:
         """Return the places where a name is read or written, in order."""
-        return sorted(self._mentions.get(name, ()))
+        return sorted(map(position, self._mentions.get(name, ())))
 
     # What is said about it
 

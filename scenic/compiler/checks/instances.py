@@ -20,13 +20,15 @@ def check_instances(context: CheckContext) -> Iterator[Diagnostic]:
         for statement in block.statements:
             if statement.__class__ not in _HOLDING:
                 continue
-            match statement:
-                case ast.Assign(targets=[*_, ast.Name(id="ego")], value=ast.Name() as cls):
-                    severity = Severity.ERROR
-                case ast.Expr(value=ast.Name() as cls):
-                    severity = Severity.WARNING
-                case _:
+            cls = statement.value
+            if not isinstance(cls, ast.Name):
+                continue
+            severity = Severity.WARNING
+            if isinstance(statement, ast.Assign):
+                target = statement.targets[-1]
+                if not (isinstance(target, ast.Name) and target.id == "ego"):
                     continue
+                severity = Severity.ERROR
             if context.properties(cls) is not None:
                 yield missing_new(cls, context, f"new {cls.id}", severity)
 

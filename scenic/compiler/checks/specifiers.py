@@ -32,6 +32,14 @@ _SPECIFIER_OF_SIDE: Final = MappingProxyType(
 """The specifier that places an object beyond a side."""
 
 
+_OF_REGIONS: Final = frozenset(
+    name
+    for name, declared in SPECIFIERS.items()
+    if any(operand.types == (REGION,) for operand in declared.operands)
+)
+"""Specifiers with an operand that must be a region."""
+
+
 def _specified(node: scenic.SpecifierPhrase) -> tuple[Specified, ...]:
     """Return the properties that a specifier gives a value, with their priorities."""
     if node.property is not None:
@@ -63,9 +71,9 @@ def _new(node: scenic.New, _scope: Scope, context: CheckContext) -> Iterator[Dia
 def _regions(specifiers: list[scenic.SpecifierPhrase], context: CheckContext) -> Iterator[Diagnostic]:
     """SC404: a point where a region is wanted: ``in front of x``."""
     for specifier in specifiers:
-        declaration = SPECIFIERS.get(specifier.specifier)
-        pairs = () if declaration is None else zip(declaration.operands, specifier.operands, strict=False)
-        for operand, value in pairs:
+        if specifier.specifier not in _OF_REGIONS:
+            continue
+        for operand, value in zip(SPECIFIERS[specifier.specifier].operands, specifier.operands, strict=False):
             if operand.types != (REGION,) or not isinstance(value, scenic.Operation):
                 continue
             operator = OPERATORS.get(value.operator)

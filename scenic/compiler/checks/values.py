@@ -3,6 +3,7 @@
 import ast
 import sys
 from collections.abc import Collection, Iterator
+from functools import partial
 from typing import Final
 
 from scenic.compiler import tree as scenic
@@ -60,7 +61,7 @@ def _specifiers(
                 left_out = operand.default is not None and _is_none(value)
                 # `in front of x` has a message of its own.
                 if not left_out and not isinstance(value, scenic.Operation):
-                    yield from wrong_kinds(element.label(operand), operand.types, value, context)
+                    yield from wrong_kinds(partial(element.label, operand), operand.types, value, context)
 
 
 def _operation(node: scenic.Operation, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
@@ -84,7 +85,7 @@ def _operation(node: scenic.Operation, scope: Scope, context: CheckContext) -> I
         operator = OPERATORS[node.operator]
         for operand, value in zip(operator.operands, node.operands, strict=False):
             if not _is_none(value):  # Mostly as if it were left out.
-                yield from wrong_kinds(operator.label(operand), operand.types, value, context)
+                yield from wrong_kinds(partial(operator.label, operand), operand.types, value, context)
 
 
 _BETWEEN_TWO: Final = frozenset({"altitude", "angle", "distance", "minimum distance"})

@@ -3,12 +3,12 @@
 import ast
 import re
 from bisect import bisect_left
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Final
 
 from scenic.compiler.checks.context import CheckContext
 from scenic.compiler.scopes import Scope
-from scenic.compiler.semantics.kinds import accepts
+from scenic.compiler.semantics.kinds import ValueKind, accepts
 from scenic.compiler.traversal import position
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.types import BEHAVIOR, COLOR, VECTOR, Type, wanted
@@ -17,13 +17,25 @@ __all__ = ["is_attempt", "may_be_meant", "wrong_kinds"]
 
 
 def wrong_kinds(
-    title: str, types: Sequence[Type], value: ast.expr | None, context: CheckContext
-) -> Iterator[Diagnostic]:
+    title: str | Callable[[], str], types: Sequence[Type], value: ast.expr | None, context: CheckContext
+) -> Iterable[Diagnostic]:
     """SC404: a value that certainly does not do where some types are declared. ``title`` is quoted."""
     kind = context.kind_of(value)
+    is_wrong = kind is not None and not accepts(types, kind)
+    if value is None or not (is_wrong or types[0] is COLOR):
+        return ()
+    return _wrong(
+        title if isinstance(title, str) else title(), types, value, kind if is_wrong else None, context
+    )
+
+
+def _wrong(
+    title: str, types: Sequence[Type], value: ast.expr, kind: ValueKind | None, context: CheckContext
+) -> Iterator[Diagnostic]:
+    """``kind`` is ``None`` if the kind of the value is right."""
     if types[0] is COLOR and isinstance(value, ast.Tuple | ast.List):
         yield from _too_bright(title, value, context)
-    if value is None or kind is None or accepts(types, kind):
+    if kind is None:
         return
     if context.broken and kind.name == "function" and BEHAVIOR in types:
         return  # `behaviour Go():` was read as a function.

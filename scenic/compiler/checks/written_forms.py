@@ -1,6 +1,5 @@
 """Functions of the established Python API where the language has syntax for what they do."""
 
-import ast
 from collections.abc import Iterator
 
 from scenic.compiler.checks.context import CheckContext
@@ -13,15 +12,12 @@ __all__ = ["check_written_forms"]
 
 def check_written_forms(context: CheckContext) -> Iterator[Diagnostic]:
     """SC315, as information: the first use of each function that the language writes in words."""
-    uses: dict[str, ast.Name] = {}
-    for node in context.resolution.references:
-        if isinstance(node, ast.Name) and (name := context.provided(node)) is not None:
-            first = uses.setdefault(name, node)
-            if position(node) < position(first):
-                uses[name] = node
-    for name, node in uses.items():
+    for name, uses in context.resolution.uses.items():
         declaration = NAMES.get(name)
         if declaration is None or declaration.syntax is None:
+            continue
+        node = min((use.node for use in uses if context.provided(use.node)), key=position, default=None)
+        if node is None:
             continue
         yield Diagnostic(
             "SC315",

@@ -130,17 +130,15 @@ def joint(kinds: Sequence[ValueKind | None]) -> ValueKind | None:
 
 def accepts(types: Sequence[Type], kind: ValueKind) -> bool:
     """Return whether values of a kind may be given where any of some types will do; true if that is not certain."""
-    if any(each.kinds is None for each in types):
-        return True
-    if kind.name in SEQUENCES:
-        return any(_accepts_sequence(each, kind) for each in types)
-    return any(kind.name in (each.kinds or ()) for each in types)
+    name = kind.name
+    for each in types:
+        if each.kinds is None or name in each.kinds:
+            return True
+    return name in SEQUENCES and any(_accepts_sequence(each, kind) for each in types)
 
 
 def _accepts_sequence(wanted: Type, kind: ValueKind) -> bool:
-    """Return whether a tuple or list may be given where a type is wanted."""
-    if kind.name in (wanted.kinds or ()):
-        return True
+    """Return whether a tuple or list may be given where a type is wanted, for its elements."""
     if wanted.items is not None:
         return kind.items is None or accepts((wanted.items,), kind.items)
     fits = bool(wanted.lengths) and (kind.size is None or kind.size in wanted.lengths)
