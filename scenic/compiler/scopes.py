@@ -11,6 +11,7 @@ from dataclasses import field
 from enum import StrEnum
 from functools import cached_property
 from typing import Any, Final, NamedTuple
+from weakref import ref
 
 from scenic.compiler.traversal import position
 from scenic.dataclass import dataclass
@@ -71,14 +72,24 @@ class BindingKind(StrEnum):
     SELF = "self"
 
 
-@dataclass(slots=True, eq=False)
 class Binding:
     """A name in a scope. ``sites`` are the nodes that bind it, in no particular order; ``kinds`` how they do."""
 
-    name: str
-    scope: "Scope"
-    sites: list[ast.AST] = field(default_factory=list)
-    kinds: set[BindingKind] = field(default_factory=set)
+    __slots__ = ("_scope", "kinds", "name", "sites")
+
+    def __init__(self, name: str, scope: "Scope") -> None:
+        self.name: Final = name
+        # Scopes hold their bindings: without a reference back trees are gone as soon as nobody needs them.
+        self._scope: Final = ref(scope)
+        self.sites: list[ast.AST] = []
+        self.kinds: set[BindingKind] = set()
+
+    @property
+    def scope(self) -> "Scope":
+        """The scope that the name is bound in, as long as somebody holds its resolution."""
+        scope = self._scope()
+        assert scope is not None
+        return scope
 
     @property
     def first_site(self) -> Any:
@@ -86,7 +97,7 @@ class Binding:
         return min(self.sites, key=position)
 
 
-@dataclass(slots=True, eq=False)
+@dataclass(slots=True, eq=False, weakref_slot=True)
 class Scope:
     """A part of the program in which names are bound."""
 

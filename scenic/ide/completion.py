@@ -499,7 +499,8 @@ def _symbol_named(
     """Return the symbol that a name denotes at a place, or ``None``."""
     numbers = [int(part) for part in place if part.isdigit()]
     if snapshot is not None and snapshot.filename == module.filename and len(numbers) == 2:
-        inner = snapshot.scope_at(numbers[0], numbers[1]).lookup(name)
+        scope = snapshot.scope_at(numbers[0], numbers[1])
+        inner = scope.lookup(name)
         if inner is not None and inner.scope.kind is not ScopeKind.MODULE:
             return symbol_of_binding(module, inner)
     export = Model(module, project).at_top(name)

@@ -230,7 +230,9 @@ class PythonSnapshot(Snapshot):
 def _scope_of_default(cls: Scope) -> Scope:
     """Return the scope of the default of a property of a class."""
     scope = Scope(ScopeKind.PROPERTY, cls.name, cls.node, cls)
-    scope.bindings["self"] = Binding("self", scope, [cls.node], {BindingKind.SELF})
+    scope.bindings["self"] = binding = Binding("self", scope)
+    binding.sites.append(cls.node)
+    binding.kinds.add(BindingKind.SELF)
     return scope
 
 

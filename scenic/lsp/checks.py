@@ -28,7 +28,7 @@ from scenic.project.index import Project
 
 __all__ = ["Checks"]
 
-PAUSE: Final = 0.01
+PAUSE: Final = 0.002
 """Seconds without a change after which a document is checked."""
 LONG_PAUSE: Final = 0.5
 """Seconds without a change after which the documents are checked that may import the changed one."""
@@ -168,9 +168,15 @@ class Checks:
             self.changed(uri)
         self._session.garbage.checked()
         if not self._is_prepared:
-            # The first completion should not have to wait for the tables that it reads.
             self._is_prepared = True
-            self._session.checker.begin(lambda _go_on: prepare())
+            self._session.later(LONG_PAUSE, self._prepare)
+
+    def _prepare(self) -> None:
+        """Make the tables that completion reads, once nobody waits for a check: the first one should not wait for them."""
+        if self._timers or self._running:
+            self._session.later(LONG_PAUSE, self._prepare)
+        else:
+            self._session.requests.begin(lambda _go_on: prepare())
 
     def _stop_timer(self, uri: str) -> None:
         timer = self._timers.pop(uri, None)

@@ -46,11 +46,15 @@ class Document:
         marks = len(self.text) - len(self.text.lstrip(_MARK))
         return Lines(self.snapshot.source, self.encoding, marks, self.before)
 
-    @cached_property
+    @property
     def programs(self) -> tuple["Document", ...]:
         """The programs of the document: itself, or the blocks of a Markdown text."""
         if self.before or not is_markdown(self.uri, self.language):
             return (self,) if self.is_program else ()
+        return self._blocks
+
+    @cached_property
+    def _blocks(self) -> tuple["Document", ...]:
         name = self.snapshot.filename
         return tuple(
             Document(

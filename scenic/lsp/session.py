@@ -155,6 +155,7 @@ class Session:
         self.generation += 1
         snapshot = snapshot_of(text, uri, language)
         document = Document(uri, language, version, text, self.encoding, snapshot)
+        self.garbage.outdate(self.documents.get(uri))
         self.documents[uri] = document
         return document
 

@@ -1,9 +1,17 @@
+import gc
+import weakref
+from pathlib import Path
+
 import pytest
 
 from scenic.compiler import check as checker
 from scenic.ide import diagnostics as module
 from scenic.ide.diagnostics import diagnostics
+from scenic.ide.snapshot import Snapshot
 from scenic.language.code_selection import Rules
+from scenic.lsp.convert import Encoding
+from scenic.lsp.documents import Document
+from scenic.project.index import Project
 
 
 def test_the_same_as_the_command_shows() -> None:
@@ -29,3 +37,21 @@ def test_rules_decide_what_is_shown() -> None:
     text = "ego = new Object with wdth 3\n"
     assert [item.code for item in diagnostics(text, filename="a.scenic")] == ["SC300"]
     assert diagnostics(text, filename="a.scenic", rules=Rules(ignore=("SC3",))) == ()
+
+
+def test_what_is_made_of_a_version_is_gone_with_it() -> None:
+    """Searching for cycles takes longer than a check: there are none."""
+    path = Path(__file__).parents[2] / "examples" / "driving" / "left_turn.scenic"
+    text = path.read_text(encoding="utf-8")
+    gc.collect()
+    gc.disable()
+    try:
+        document = Document("file:///a.scenic", "scenic", 1, text, Encoding.UTF16, Snapshot(text, str(path)))
+        (program,) = document.programs
+        module.found_in(program.snapshot, Rules(), Project((str(path.parent),)))
+        scopes = [weakref.ref(scope) for scope in program.snapshot.resolution.scopes.values()]
+        del document, program
+        assert len(scopes) > 1
+        assert not any(scope() for scope in scopes)
+    finally:
+        gc.enable()

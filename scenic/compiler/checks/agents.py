@@ -38,7 +38,7 @@ def check_agents(context: CheckContext) -> Iterator[Diagnostic]:
     """Reports objects whose behaviors take actions of the driving domain that they cannot take."""
     if "behavior" not in context.source.text or not any(name in context.brought for name in _NEEDS):
         return
-    known: dict[object, dict[str, bool]] = {}
+    needs_of = _Needs(context)
     for cls, value in _given(context):
         agent = context.meaning(cls)
         call = value.func if isinstance(value, ast.Call) else value
@@ -46,7 +46,7 @@ def check_agents(context: CheckContext) -> Iterator[Diagnostic]:
         if agent is None or behavior is None or behavior.kind is not SymbolKind.BEHAVIOR:
             continue
         able = _abilities(context, agent)
-        needs = _needs(context, behavior, known)
+        needs = needs_of.of(behavior)
         # A behavior for several kinds of agents asks which one it has.
         if able is None or len(needs) != 1 or needs.keys() <= able or not all(needs.values()):
             continue
@@ -88,44 +88,42 @@ def _abilities(model: Model, agent: Symbol) -> frozenset[str] | None:
     return frozenset(able)
 
 
-def _needs(
-    model: Model, behavior: Symbol, known: dict[object, dict[str, bool]], depth: int = 0
-) -> dict[str, bool]:
-    """The abilities that agents of a behavior need, and whether that is so whatever the behavior asks with ``if``."""
-    # Those of behaviors of other modules are known until one of the modules changes.
-    table = known if behavior.module is model.module else model.modules.derived
-    key = (behavior.node, depth)
-    if key not in table:
-        table[key] = _find_needs(model, behavior, known, depth)
-    return table[key]
+class _Needs:
+    """The abilities that agents of behaviors need, and whether that is so whatever the behaviors ask with ``if``."""
 
+    def __init__(self, model: Model) -> None:
+        self._model: Final = model
+        self._known: Final[dict[object, dict[str, bool]]] = {}
 
-def _find_needs(
-    model: Model, behavior: Symbol, known: dict[object, dict[str, bool]], depth: int
-) -> dict[str, bool]:
-    module, node = behavior.module, behavior.node
-    if module is None or not isinstance(node, scenic.BehaviorDef) or depth > _DEEPEST:
-        return {}
-    home = model.beside(module)
+    def of(self, behavior: Symbol, depth: int = 0) -> dict[str, bool]:
+        """The needs of a behavior; ``depth`` is the number of those that run each other before it."""
+        module, node = behavior.module, behavior.node
+        if module is None or not isinstance(node, scenic.BehaviorDef) or depth > _DEEPEST:
+            return {}
+        # Those of behaviors of other modules are known until one of the modules changes.
+        known = self._known if module is self._model.module else self._model.modules.derived
+        key = (node, depth)
+        if key not in known:
+            home = self._model.beside(module)
+            known[key] = _joined(self._of_part(part, behavior, home, depth) for part in node.body)
+        return known[key]
 
-    def needs_of_run(target: ast.expr) -> dict[str, bool]:
-        run = _behavior_of(home, target)
-        return {} if run is None or run == behavior else _needs(model, run, known, depth + 1)
+    def _of_part(self, part: ast.AST, behavior: Symbol, home: Model, depth: int) -> dict[str, bool]:
+        def of_all(inner: Iterable[ast.AST]) -> dict[str, bool]:
+            return _joined(self._of_part(each, behavior, home, depth) for each in inner)
 
-    def needs_of(part: ast.AST) -> dict[str, bool]:
         if isinstance(part, ast.If):
             # What both branches take is taken whatever is asked.
-            here, there = _joined(map(needs_of, part.body)), _joined(map(needs_of, part.orelse))
+            here, there = of_all(part.body), of_all(part.orelse)
             return {need: here.get(need, False) and there.get(need, False) for need in here | there}
         if isinstance(part, scenic.Take):
             actions = map(home.class_of, part.actions)
-            needs = [_need_of_action(model, cls) for cls in actions if cls is not None]
+            needs = [_need_of_action(self._model, cls) for cls in actions if cls is not None]
             return {need: True for need in needs if need is not None}
         if isinstance(part, scenic.Do | scenic.DoChoose):
-            return _joined(map(needs_of_run, part.targets))
-        return _joined(needs_of(inner) for inner in parts(part) if not isinstance(inner, ast.expr))
-
-    return _joined(map(needs_of, node.body))
+            runs = [_behavior_of(home, target) for target in part.targets]
+            return _joined(self.of(run, depth + 1) for run in runs if run is not None and run != behavior)
+        return of_all(inner for inner in parts(part) if not isinstance(inner, ast.expr))
 
 
 def _joined(each: Iterable[dict[str, bool]]) -> dict[str, bool]:

@@ -2,7 +2,6 @@
 
 import ast
 from collections.abc import Iterator
-from typing import Final
 
 from scenic.compiler.checks.context import CheckContext
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Severity
@@ -11,16 +10,11 @@ from scenic.language.spans import Span
 __all__ = ["check_instances", "missing_new"]
 
 
-_HOLDING: Final = frozenset({ast.Assign, ast.Expr})
-
-
 def check_instances(context: CheckContext) -> Iterator[Diagnostic]:
     """SC111: ``ego = Car``, and a class that is a whole statement."""
     for block in context.blocks:
         for statement in block.statements:
-            if statement.__class__ not in _HOLDING:
-                continue
-            cls = statement.value
+            cls = statement.value if isinstance(statement, ast.Assign | ast.Expr) else None
             if not isinstance(cls, ast.Name):
                 continue
             severity = Severity.WARNING

@@ -301,7 +301,8 @@ def _outline(site: ast.AST) -> tuple[tuple[str, ...], tuple[str, ...]] | None:
             properties.append(item.name)
         elif not (isinstance(item, ast.Expr) and isinstance(item.value, ast.Constant)):
             return None
-    return tuple(map(ast.dump, site.bases)), tuple(sorted(properties))
+    bases = tuple(base.id if isinstance(base, ast.Name) else ast.dump(base) for base in site.bases)
+    return bases, tuple(sorted(properties))
 
 
 def _built_in(name: str) -> Class:
