@@ -15,11 +15,12 @@ from numpy.typing import NDArray
 import scenic
 from benchmarks.motion.courses import Course, Lines
 from benchmarks.motion.figures import Run
+from scenic.domains.driving import paths
 from scenic.domains.driving.following import Driver
 from scenic.domains.driving.lane_changing import LaneChanger
 from scenic.domains.driving.lane_driving import junctions_of, lanes_along
 from scenic.domains.driving.narrow_lanes import line_to_drive, ways_after
-from scenic.domains.driving.planning import path_of_lines, speeds_of
+from scenic.domains.driving.planning import speeds_of
 from scenic.domains.driving.speed_profiles import Comfort
 from scenic.runtime.program.builtins import running_simulation
 
@@ -152,7 +153,7 @@ def _fastest(
 ) -> float:
     """The speed, up to the one that is wanted, from which a car at a place can brake comfortably, and before a junction."""
     lines = [line_to_drive(lane) for lane in lanes]
-    path = path_of_lines(lines)
+    path = paths.Path(paths.PathPieces().along(lines))
     path.lanes, _ = lanes_along(path, lanes, lines)
     junctions = junctions_of(path)
     comfort = Comfort()
@@ -176,7 +177,7 @@ def _fastest(
 
 def _straight(lines: Sequence[Floats], along: float) -> float:
     """Metres along lines to the last place before one around which they are straight; the straightest one if there is none."""
-    path = path_of_lines(lines)
+    path = paths.Path(paths.PathPieces().along(lines))
     from scipy.ndimage import maximum_filter1d
 
     around = maximum_filter1d(np.abs(path.curvatures), 13)
@@ -200,7 +201,7 @@ def _car(
     lines = [line_to_drive(lane) for lane in lanes]
     line = shapely.LineString(np.concatenate(lines))
     # On the smooth path, in its direction: what a car makes up for at first is no motion along lanes.
-    path = path_of_lines(lines)
+    path = paths.Path(paths.PathPieces().along(lines))
     x, y = line.interpolate(min(along, line.length - 0.3)).coords[0]
     index, share, _ = path.locate(x, y, path.nearest(x, y, along))
     share = min(max(share, 0.0), 1.0)

@@ -10,6 +10,7 @@ import shapely
 
 import scenic
 from benchmarks.motion import Course
+from scenic.domains.driving.paths import PathPieces
 from scenic.domains.driving.planning import MotionPlan
 from scenic.domains.driving.roads import Network
 from scenic.language.errors import InvalidScenarioError
@@ -426,3 +427,18 @@ def test_what_has_no_steering_wheel_cannot_be_driven(folder: Path) -> None:
     text = "ego = new Pedestrian at (100, -1.75), with regionContainedIn None, with behavior FollowLaneBehavior\n"
     with pytest.raises(InvalidScenarioError, match="cannot be driven"):
         simulated(folder, text)
+
+
+def test_pieces_along_routes_are_shared_and_the_last_ones_kept() -> None:
+    pieces = PathPieces()
+    lines = [np.array([[0.0, 0.0], [30.0, 0.0]]), np.array([[30.0, 0.0], [60.0, 5.0]])]
+    first = pieces.along(lines)
+    assert pieces.along([line.copy() for line in lines]) is first
+    other = pieces.along([lines[0], lines[1] + [0.0, 0.5]])
+    assert not np.array_equal(other.points, first.points)
+    for number in range(256):
+        pieces.along([np.array([[0.0, 0.0], [3.0, number / 99]])])
+    again = pieces.along(lines)
+    assert again is not first
+    assert np.array_equal(again.points, first.points)
+    assert np.array_equal(again.curvatures, first.curvatures)

@@ -1,10 +1,10 @@
 """Drawings of road networks from above, which need no display."""
 
 from collections.abc import Sequence
+from html import escape
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Final
-from xml.sax.saxutils import escape
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,7 +55,7 @@ def svg(network: "RoadNetwork", width: int = 1200) -> str:
     ]
     for word, some in _areas(network):
         parts += [
-            f'<path class="{word}" d="{_area(element.polygon)}"><title>{escape(element.uid)}</title></path>'
+            f'<path class="{word}" d="{_area(element.polygon)}"><title>{escape(element.uid, quote=False)}</title></path>'
             for element in some
         ]
     for road in network.roads:
@@ -65,7 +65,7 @@ def svg(network: "RoadNetwork", width: int = 1200) -> str:
     for mark in _marks(network):
         parts.append(
             f'<path class="{mark.form}" fill="{mark.color}" stroke="{mark.border}" stroke-width=".25" d="{_way(mark.outline)}Z">'
-            f"<title>{escape(mark.title)}</title></path>"
+            f"<title>{escape(mark.title, quote=False)}</title></path>"
         )
     parts.append("</svg>\n")
     return "\n".join(parts)

@@ -15,7 +15,7 @@ from scenic.domains.driving.elements import Lane
 from scenic.domains.driving.following import Driver
 from scenic.domains.driving.kinds import ManeuverType
 from scenic.domains.driving.paths import Path
-from scenic.domains.driving.planning import MotionPlan, path_of_lines, speeds_of
+from scenic.domains.driving.planning import MotionPlan, speeds_of
 from scenic.domains.driving.speed_profiles import Comfort
 from scenic.domains.driving.trajectories import Route
 from scenic.runtime.program.builtins import running_simulation
@@ -314,7 +314,7 @@ class RouteDriver(Driver):
         self.drive_by("keep")
 
     def _start(self) -> None:
-        path = path_of_lines(self._route.lines, self.tightest)
+        path = Path(self._agent.roadNetwork.path_pieces(tightest=self.tightest).along(self._route.lines))
         path.lanes, self._last = lanes_along(path, self._route.parts, self._route.lines)
         limits, target = self._limits(path), self._target
         if self._route.speeds is not None:

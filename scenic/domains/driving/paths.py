@@ -31,6 +31,8 @@ _WORTH: Final = 0.1
 """Seconds of smoothing from which on its results are kept."""
 _SHARE: Final = 10
 """Times that keeping pieces takes which are spent on others before all are kept again."""
+_ROUTES: Final = 256
+"""Routes whose pieces are kept."""
 _SHARED: Final = 4
 """Points that neighbouring pieces share: they fix position, heading and curvature."""
 
@@ -68,6 +70,7 @@ class PathPieces:
         self._content = None if origin is None else origin + repr((backward, tightest)).encode()
         self._pieces = {} if self._content is None else kept_pieces(self._content, lanes or {})
         self._spent, self._worth = 0.0, _WORTH
+        self._routes: dict[bytes, PathPiece] = {}
 
     def _line(self, lane: Lane) -> Floats:
         line = line_to_drive(lane)
@@ -100,6 +103,17 @@ class PathPieces:
         """
         key: PieceKey = (opens, closes, *(lane.uid for lane in lanes))
         return self._known(key, lambda: self._through(lanes, opens=opens, closes=closes))
+
+    def along(self, lines: Sequence[Floats]) -> PathPiece:
+        """Return the piece along lines ``(n, 2)`` of a route, one after the other; those of the last routes are kept."""
+        points = np.concatenate(lines)
+        key = points.tobytes()
+        piece = self._routes.get(key)
+        if piece is None:
+            if len(self._routes) >= _ROUTES:
+                self._routes.clear()
+            piece = self._routes[key] = piece_along(smoothed(resampled(points), tightest=self._tightest))
+        return piece
 
     def _known(self, key: PieceKey, make: Callable[[], PathPiece]) -> PathPiece:
         piece = self._pieces.get(key)

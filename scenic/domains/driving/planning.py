@@ -9,12 +9,11 @@ from numpy.typing import NDArray
 
 from scenic.domains.driving.elements import Lane, Maneuver
 from scenic.domains.driving.narrow_lanes import ways_after
-from scenic.domains.driving.path_pieces import piece_along
-from scenic.domains.driving.path_smoothing import TIGHTEST, resampled, smoothed
+from scenic.domains.driving.path_smoothing import TIGHTEST
 from scenic.domains.driving.paths import Path, PathPieces, is_long
 from scenic.domains.driving.speed_profiles import Comfort, speeds_along, speeds_in_bends
 
-__all__ = ["MotionPlan", "Pace", "join", "path_of_lines", "speeds_of"]
+__all__ = ["MotionPlan", "Pace", "join", "speeds_of"]
 
 Floats = NDArray[np.float64]
 
@@ -103,12 +102,6 @@ class MotionPlan:
     def reserve(self, speed: float, deceleration: float) -> float:
         """Metres of path ahead from which on the next choice is due: more than the way of braking from a speed."""
         return speed * speed / (2 * deceleration) + 2 * speed + _MARGIN
-
-
-def path_of_lines(lines: Sequence[Floats], tightest: float = TIGHTEST) -> Path:
-    """The smooth path along lines ``(n, 2)``, one after the other, of a curvature (1/m) that a car drives."""
-    points = smoothed(resampled(np.concatenate(lines)), tightest=tightest)
-    return Path(piece_along(points))
 
 
 class Pace:

@@ -45,7 +45,7 @@ class Copies(Sample):
 
     def __init__(self, lanes: SampledLanes, lane: int, originals: Originals) -> None:
         names = Globals()
-        names.contents = originals.contents
+        names.contents, names.with_methods = originals.contents, originals.with_methods
         super().__init__(lanes, lane, names)
         self._originals = originals
         self._shares = originals.claim(self)

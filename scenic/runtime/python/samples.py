@@ -68,6 +68,8 @@ class Globals:
         self._members: dict[type, list[Any]] = {}
         self._varying: dict[type, bool] = {}
         self._owned: dict[type, bool] = {}
+        self.with_methods: dict[type, bool] = {}
+        """Classes, and whether methods of theirs are a program's (`is_own`)."""
         self._placements: dict[int, tuple[Instance, Placement]] = {}
         self.contents: Callable[[Any], Any] | None = None
         """The contents of a container when the program had run, once simulations may have changed it."""
@@ -127,7 +129,7 @@ class Globals:
         """Return whether a class is a plain Python class of the program (`is_own`)."""
         known = self._owned.get(cls)
         if known is None:
-            known = self._owned[cls] = is_own(cls, Instance)
+            known = self._owned[cls] = is_own(cls, Instance, self.with_methods)
         return known
 
     def copies(self, cls: type) -> bool:

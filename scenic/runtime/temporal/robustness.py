@@ -72,6 +72,8 @@ class Robustness:
             self._left = _progressed(self._start, margin, self._join, clauses_of)
             self._start = None
             return
+        if all(not obligations for obligations in self._left):
+            return  # Nothing is left to hold.
         left: _Clauses = {}
         for obligations, value in self._left.items():
             clause: _Clauses = {_NOW: value}

@@ -82,14 +82,18 @@ def content(cell: CellType) -> Any:
         return None
 
 
-def is_own(cls: type, root: type) -> bool:
+def is_own(cls: type, root: type, known: dict[type, bool]) -> bool:
     """Return whether a class is a plain Python class of a program, with methods that read the program's names.
 
-    Classes that derive from ``root``, and those from which such ones derive, have one identity everywhere.
+    Classes that derive from ``root``, and those from which such ones derive, have one identity everywhere. ``known`` keeps for each
+    class whether it has such methods.
     """
     if type(cls) not in (type, ABCMeta) or issubclass(cls, root):
         return False
-    own = [base for base in cls.__mro__ if any(own_functions(base))]
+    for base in cls.__mro__:
+        if base not in known:
+            known[base] = any(own_functions(base))
+    own = [base for base in cls.__mro__ if known[base]]
     return bool(own) and not any("__init_subclass__" in vars(base) or _has_below(base, root) for base in own)
 
 

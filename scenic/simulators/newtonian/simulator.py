@@ -16,6 +16,7 @@ from scenic.graph.quaternions import turned_upright
 from scenic.language.errors import SimulationCreationError
 from scenic.runtime.scenes.scene import Scene
 from scenic.runtime.values.lazy import MEMO
+from scenic.runtime.values.rows import orientation_of, vector_of
 from scenic.runtime.values.values import Orientation, Vector, operate
 from scenic.simulators.cameras import Cameras
 from scenic.simulators.newtonian.controls import Driven, Walking
@@ -215,7 +216,7 @@ class NewtonianSimulation(DrivingSimulation):
             parent = own[0]
             values = self._values(state, parent)
             if values["yaw"] != attributes["yaw"]:
-                orientation = Orientation.of(turned_upright(parent.q, values["yaw"]))
+                orientation = orientation_of(turned_upright(parent.q, values["yaw"]))
                 attributes["orientation"], attributes["heading"] = orientation, orientation.yaw
             if attributes.get("elevation") is None:
                 del values["elevation"]
@@ -251,11 +252,11 @@ class NewtonianSimulation(DrivingSimulation):
             yaw, angles["pitch"], angles["roll"] = local.eulerAngles
         x, y, z = state.velocity
         return {
-            "position": Vector.of(state.position),
-            "velocity": Vector.of(state.velocity),
+            "position": vector_of(state.position),
+            "velocity": vector_of(state.velocity),
             "speed": math.sqrt(x * x + y * y + z * z),
             "angularSpeed": abs(state.rate),
-            "angularVelocity": Vector.of((0.0, 0.0, state.rate)),
+            "angularVelocity": vector_of((0.0, 0.0, state.rate)),
             "yaw": yaw,
             "elevation": state.position[2],
             **angles,
