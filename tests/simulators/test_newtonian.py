@@ -11,6 +11,7 @@ import pytest
 
 import scenic
 from scenic.simulators.newtonian import NewtonianSimulation, NewtonianSimulator
+from tests.maps import RoadText, line, map_text, two_way
 
 MAPS = Path(os.environ.get("SCENIC_TEST_MAPS", "maps"))
 PROGRAM = """
@@ -76,11 +77,23 @@ record [(o.position, o.velocity, o.angularVelocity, o.orientation.q, o.heading, 
 """
 
 
-@pytest.mark.parametrize("tilt", ["0", "0.1"])
-def test_properties_written_at_once_are_those_of_a_simulator_that_is_asked(tilt: str) -> None:
-    road_map = Path(__file__).parents[2] / "examples" / "driving" / "crossing.xodr"
-    text = f"param map = {str(road_map)!r}" + MOVING.replace("TILT", tilt)
-    for scene in scenic.scenarioFromString(text, mode2D=tilt == "0").sample(3, seed=2):
+CROSSING = (Path(__file__).parents[2] / "examples" / "driving" / "crossing.xodr").read_text()
+PROFILES = (
+    '<elevationProfile><elevation s="0" a="2" b="0.02" c="0.0004" d="0"/></elevationProfile>'
+    '<lateralProfile><superelevation s="0" a="0.02" b="0.001" c="0" d="0"/></lateralProfile>'
+)
+HILL = map_text([RoadText("1", 400.0, line(0, 0, 0.7, 400.0), two_way(False, False), rest=PROFILES)])
+
+
+@pytest.mark.parametrize(
+    ("road_map", "tilt", "mode_2d"), [(CROSSING, 0, True), (CROSSING, 0.1, False), (HILL, 0.1, False)]
+)
+def test_properties_written_at_once_are_those_of_a_simulator_that_is_asked(
+    tmp_path: Path, road_map: str, tilt: float, mode_2d: bool
+) -> None:
+    (tmp_path / "map.xodr").write_text(road_map)
+    text = f"param map = {str(tmp_path / 'map.xodr')!r}{MOVING.replace('TILT', str(tilt))}"
+    for scene in scenic.scenarioFromString(text, mode2D=mode_2d).sample(2, seed=2):
         courses = []
         for kind in (NewtonianSimulation, Asking):
             random.seed(5)

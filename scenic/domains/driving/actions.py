@@ -222,7 +222,8 @@ class RegulatedControlAction(SteeringAction):
             self.throttle, self.brake = min(throttle, max_throttle), 0.0
         else:
             self.throttle, self.brake = 0.0, min(-throttle, max_brake)
-        steer = min(max(steer, past_steer - 0.1), past_steer + 0.1)
+        if steer is not past_steer:
+            steer = min(max(steer, past_steer - 0.1), past_steer + 0.1)
         self.steer = min(max(steer, -max_steer), max_steer)
 
     def applyTo(self, agent: Any, simulation: object) -> None:

@@ -368,7 +368,8 @@ class Run:
     def _record(self, step: int) -> None:
         records = self.simulation.records
         # The top-level scenario may have stopped in this step, which belongs to it.
-        for scenario in (self.top, *(each for each in self.scenarios if each is not self.top)):
+        top = self.top
+        for scenario in [top, *[each for each in self.scenarios if each is not top]]:
             if not scenario.records:
                 continue
             before, self.current, self._creating = (self.current, self._creating), scenario, None

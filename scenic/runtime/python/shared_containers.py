@@ -37,7 +37,7 @@ class Originals:
     def __init__(self, roots: Iterable[object]) -> None:
         self._user: ref[Any] | None = None
         self.with_methods: dict[type, bool] = {}
-        """What simulations have learned of classes (`scenic.runtime.values.ownership.is_own`)."""
+        """Classes, and whether methods of theirs are a program's, as simulations have found (`scenic.runtime.values.ownership.is_own`)."""
         self._kept: dict[int, tuple[Any, _Contents]] = {
             id(item): (item, _contents(item)) for item in _shareable(list(roots))
         }

@@ -12,12 +12,12 @@ from typing import Any, ClassVar, Final
 
 from scenic.domains.driving.actions import Steers
 from scenic.domains.driving.simulators import DrivingSimulation, DrivingSimulator
-from scenic.graph.quaternions import turned_upright
+from scenic.graph.quaternions import Parts, euler_angle, euler_angles, of_euler, product, turned_upright
 from scenic.language.errors import SimulationCreationError
 from scenic.runtime.scenes.scene import Scene
 from scenic.runtime.values.lazy import MEMO
 from scenic.runtime.values.rows import orientation_of, vector_of
-from scenic.runtime.values.values import Orientation, Vector, operate
+from scenic.runtime.values.values import Orientation, Vector
 from scenic.simulators.cameras import Cameras
 from scenic.simulators.newtonian.controls import Driven, Walking
 from scenic.simulators.newtonian.terrain import Terrain
@@ -31,6 +31,7 @@ _ACCELERATION: Final = 5.6
 _BRAKING: Final = 6.8
 """Of full brakes, in m/s^2."""
 _UPRIGHT: Final = Orientation()
+_ANGLES: Final = "yaw", "pitch", "roll"
 _PLAIN: Final = MappingProxyType(
     {
         **dict.fromkeys(("position", "velocity", "angularVelocity"), Vector),
@@ -80,8 +81,8 @@ class State:
         self.values: Mapping[str, Any] = {}
         self.is_plain = False
         """True if all of its properties are known to follow from its place in the plane."""
-        self.own: tuple[Any, Any, Any] | None = None
-        """Its parent, pitch and roll, of which that is known."""
+        self.own: tuple[Any, Any] | None = None
+        """Its parent, and its pitch and roll unless the road decides them, of which that is known."""
         self.parent_yaw: float | None = None
         """By how much that is turned; ``None`` if it is upright."""
         self.length = float(obj.length)
@@ -202,30 +203,35 @@ class NewtonianSimulation(DrivingSimulation):
         return present
 
     def _update(self, obj: object) -> None:
-        """Read the properties of an object back: by `getProperties`, or sooner where they can only be what they are in the plane."""
+        """Read the properties of an object back: by `getProperties`, or sooner where they can only be what follows from the state."""
         state, attributes = self._states[id(obj)], obj.__dict__
-        own = attributes["parentOrientation"], attributes["pitch"], attributes["roll"]
-        if own != state.own or not state.is_plain or state.frame is not None:
+        parent, frame = attributes["parentOrientation"], state.frame
+        own = parent, (attributes["pitch"], attributes["roll"]) if frame is None else None
+        if own != state.own or not state.is_plain:
             self._inputs.pop(id(obj), None)
             super()._update(obj)
-            if own != state.own and state.frame is None:
-                state.own, state.is_plain = own, self._is_plain(obj)
+            if own != state.own:
+                state.own, state.is_plain = own, self._is_plain(obj, inclined=frame is not None)
             return
-        moment = state.position, state.velocity, state.heading, state.rate
+        moment = state.position, state.velocity, state.heading, state.rate, frame
         if moment != state.moment:
-            parent = own[0]
             values = self._values(state, parent)
-            if values["yaw"] != attributes["yaw"]:
-                orientation = orientation_of(turned_upright(parent.q, values["yaw"]))
-                attributes["orientation"], attributes["heading"] = orientation, orientation.yaw
+            turn: Parts | None = None
+            if frame is None:
+                if values["yaw"] != attributes["yaw"]:
+                    turn = turned_upright(parent.q, values["yaw"])
+            elif any(values[name] != attributes[name] for name in _ANGLES):
+                turn = product(parent.q, of_euler(*[values[name] for name in _ANGLES]))
+            if turn is not None:
+                attributes["orientation"], attributes["heading"] = orientation_of(turn), euler_angle(turn, 0)
             if attributes.get("elevation") is None:
                 del values["elevation"]
             state.moment, state.values = moment, values
         attributes.update(state.values)
         attributes.pop(MEMO, None)
 
-    def _is_plain(self, obj: object) -> bool:
-        """Return whether nothing decides the properties of an object but its place in the plane."""
+    def _is_plain(self, obj: object, *, inclined: bool) -> bool:
+        """Return whether nothing decides the properties of an object but its state, which may be on a road that is inclined."""
         attributes, names, finals = obj.__dict__, self._dynamic(type(obj)), self._finals[type(obj)]
         return (
             type(self).getProperties is NewtonianSimulation.getProperties
@@ -234,7 +240,8 @@ class NewtonianSimulation(DrivingSimulation):
             and {entry.name for entry in finals.builtin} == {"orientation", "heading"}
             and all(name in names and type(attributes[name]) is cls for name, cls in _PLAIN.items())
             and type(attributes.get("elevation")) in (float, type(None))
-            and all(repr(attributes[name]) == "0.0" for name in ("pitch", "roll"))
+            and all(type(attributes[name]) is float for name in _ANGLES)
+            and (inclined or repr((attributes["pitch"], attributes["roll"])) == "(0.0, 0.0)")
         )
 
     def _values(self, state: State, parent: Any) -> dict[str, Any]:
@@ -244,14 +251,8 @@ class NewtonianSimulation(DrivingSimulation):
             state.parent, state.parent_yaw = parent, parent.yaw if parent != _UPRIGHT else None
         if state.parent_yaw is not None:
             yaw = (yaw - state.parent_yaw + math.pi) % (2 * math.pi) - math.pi
-        angles: dict[str, float] = {}
-        if state.frame is not None:
-            local = Orientation.of(state.frame)
-            if state.parent_yaw is not None:
-                local = operate("compose", operate("inverse", parent), local)
-            yaw, angles["pitch"], angles["roll"] = local.eulerAngles
         x, y, z = state.velocity
-        return {
+        values = {
             "position": vector_of(state.position),
             "velocity": vector_of(state.velocity),
             "speed": math.sqrt(x * x + y * y + z * z),
@@ -259,8 +260,15 @@ class NewtonianSimulation(DrivingSimulation):
             "angularVelocity": vector_of((0.0, 0.0, state.rate)),
             "yaw": yaw,
             "elevation": state.position[2],
-            **angles,
         }
+        if state.frame is not None:
+            x, y, z, w = state.frame
+            local: Parts = x, y, z, w
+            if state.parent_yaw is not None:
+                x, y, z, w = parent.q
+                local = product((-x, -y, -z, w), local)
+            values["yaw"], values["pitch"], values["roll"] = euler_angles(local)
+        return values
 
     def steering_for(self, agent: Any, curvature: float) -> float:
         """Return the position of the steering wheel by which a car of this simulator drives a curve."""
