@@ -306,6 +306,17 @@ ego = new Truck at (-60, -1.75), facing -90 deg, with speed 8, with regionContai
     assert np.abs(after[:, 0] + 1.75).max() < 0.1
 
 
+@pytest.mark.parametrize("behavior", ["FollowLaneBehavior(-5)", "DriveByRulesBehavior(-5)"])
+def test_a_negative_speed_is_none(folder: Path, behavior: str) -> None:
+    done = simulated(
+        folder,
+        f"ego = new Car at (50, -1.75), facing -90 deg, with speed 3, with behavior {behavior}\n",
+        steps=60,
+    )
+    assert speeds(course(done))[-1] == pytest.approx(0, abs=0.01)
+    assert done.notes[0] == (0, 0, "is to reach -5 m/s, which is taken as 0: behaviors drive forward")
+
+
 def test_a_change_to_a_lane_of_the_other_direction_is_an_error(folder: Path) -> None:
     text = """
 section = network.laneSectionAt((300, 1.75))

@@ -276,7 +276,13 @@ def test_cars_of_one_simulator_in_another_say_what_to_do(
         ("Own(text)", 4, "`target_speed` of FollowLaneBehavior: expected a number, not 'fast' (str)"),
         ("Other(lane)", 6, "the lane to change to: expected a lane or a lane section, not None"),
         ("Third(4)", 8, "the trajectory: expected lanes or lines in a list that is not empty"),
-        ("Fourth(4)", 10, "TypeError: 'int' object is not iterable"),
+        ("Fourth(4)", 10, "where to walk: expected places, not 4 (int)"),
+        ("FollowLaneBehavior(comfort=3)", 13, "`comfort`: expected a `Comfort`, not 3 (int)"),
+        ("FollowLaneBehavior(laneToFollow=network.roads[0])", 13, "`laneToFollow`: expected a lane, not"),
+        ("FollowLaneBehavior(follow_gap=-1)", 13, "no car keeps -1 s behind others"),
+        ("FollowVehicleBehavior(3)", 13, "the vehicle to follow: expected an object of the simulation"),
+        ("DriveByRulesBehavior(ignore=3)", 13, "`ignore`: expected names of rules in a set, not 3 (int)"),
+        ("FollowLaneBehavior(comfort=Comfort(jerk=0))", 13, "jerk of `Comfort` must be more than 0, not 0"),
     ],
 )
 def test_errors_of_library_behaviors_are_at_the_program(
@@ -293,7 +299,7 @@ def test_errors_of_library_behaviors_are_at_the_program(
         "text = Uniform('fast', 'fast')\nlane = Uniform(None, None)\n"
     )
     kind = "Pedestrian" if "Fourth" in call else "Car"
-    with pytest.raises((ScenicTypeError, TypeError)) as caught:
+    with pytest.raises((ScenicTypeError, InvalidScenarioError)) as caught:
         programs.simulated(text + f"ego = new {kind} with behavior {call}\n", 3, map="street")
     found = diagnose(caught.value)
     assert found is not None

@@ -8,6 +8,7 @@ import numpy as np
 
 from scenic.dataclass import dataclass
 from scenic.domains.driving.paths import Path
+from scenic.domains.driving.wrong_arguments import impossible_argument
 
 __all__ = ["Course", "Gap", "Leader", "Traffic", "following_acceleration", "leader_on"]
 
@@ -37,6 +38,14 @@ class Gap:
     headway: float = 1.5
     standing: float = 2.0
     is_of_centres: bool = False
+
+    def __post_init__(self) -> None:
+        if not self.headway >= 0:
+            raise impossible_argument(
+                "follow_gap",
+                f"no car keeps {self.headway} s behind others",
+                "give a number of seconds, at least 0",
+            )
 
 
 @dataclass(frozen=True, slots=True)

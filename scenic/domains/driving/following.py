@@ -23,6 +23,7 @@ from scenic.domains.driving.planning import Pace, join, speeds_of
 from scenic.domains.driving.running_traffic import ADVICE, running_traffic
 from scenic.domains.driving.speed_profiles import Comfort
 from scenic.domains.driving.watching import InsideWatch
+from scenic.domains.driving.wrong_arguments import wrong_argument
 from scenic.language.errors import InvalidScenarioError
 
 __all__ = ["Driver", "stopping_acceleration"]
@@ -90,6 +91,8 @@ class Driver:
                 f"{agent!r} cannot be driven: it has no throttle, brakes and steering wheel",
                 help=f"pedestrians have `WalkTo` and `Walk`; for vehicles {ADVICE}",
             )
+        if comfort is not None and not isinstance(comfort, Comfort):
+            raise wrong_argument("comfort", "a `Comfort`", comfort)
         self._agent: Any = agent
         self._simulation = running_traffic()
         self.comfort = Comfort() if comfort is None else comfort
@@ -128,7 +131,14 @@ class Driver:
         return self._path.lane_at(index) if abs(offset) < _ON and 0 <= share <= 1 else None
 
     def follow_only(self, other: object) -> None:
-        """Keep the gap to one car alone."""
+        """Keep the gap to one car alone.
+
+        Raises:
+            ScenicTypeError: it is no object of the simulation.
+
+        """
+        if not any(other is item for item in self._simulation.objects):
+            raise wrong_argument("other", "an object of the simulation", other, "the vehicle to follow")
         self._only = other
 
     # What is followed

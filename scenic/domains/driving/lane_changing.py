@@ -15,8 +15,7 @@ from scenic.domains.driving.lane_driving import LaneDriver, turned_from
 from scenic.domains.driving.paths import Path
 from scenic.domains.driving.planning import MotionPlan
 from scenic.domains.driving.speed_profiles import Comfort
-from scenic.language.errors import InvalidScenarioError
-from scenic.runtime.values.describing import wrong_type
+from scenic.domains.driving.wrong_arguments import impossible_argument, wrong_argument
 
 Floats = NDArray[np.float64]
 
@@ -101,16 +100,13 @@ class LaneChanger(LaneDriver):
     ) -> None:
         lane = section.lane if isinstance(section, LaneSection) else section
         if not isinstance(lane, Lane):
-            error = wrong_type("a lane or a lane section", lane, "the lane to change to")
-            error.argument = _LANE
-            raise error
+            raise wrong_argument(_LANE, "a lane or a lane section", lane, "the lane to change to")
         if not oncoming and abs(turned_from(agent, lane)) > math.pi / 2:
-            failure = InvalidScenarioError(
+            raise impossible_argument(
+                _LANE,
                 f"{lane.uid} leads in the other direction than the car that is to change to it",
-                help="to drive against the traffic, say `is_oppositeTraffic=True`; to turn round, use `UTurnBehavior`",
+                "to drive against the traffic, say `is_oppositeTraffic=True`; to turn round, use `UTurnBehavior`",
             )
-            failure.argument = _LANE
-            raise failure
         self._asked, self._duration = lane, duration
         self._end = math.inf
         self._own: Lane | None = None

@@ -18,6 +18,7 @@ from scenic.domains.driving.paths import Path
 from scenic.domains.driving.planning import MotionPlan, speeds_of
 from scenic.domains.driving.speed_profiles import Comfort
 from scenic.domains.driving.trajectories import Route
+from scenic.domains.driving.wrong_arguments import speed_to_reach, wrong_argument
 from scenic.runtime.program.builtins import running_simulation
 
 Floats = NDArray[np.float64]
@@ -102,7 +103,9 @@ class LaneDriver(Driver):
         gap: Gap | None = None,
     ) -> None:
         super().__init__(agent, comfort, gap)
-        self._target = target
+        if lane is not None and not isinstance(lane, Lane):
+            raise wrong_argument("laneToFollow", "a lane", lane)
+        self._target = speed_to_reach(agent, self._simulation, target)
         self._lane = lane
         self._plan: MotionPlan
         self._due = 0.0
@@ -280,6 +283,7 @@ class LaneDriver(Driver):
 
     def set_target(self, target: float) -> None:
         """Change the speed to reach."""
+        target = speed_to_reach(self._agent, self._simulation, target)
         if target != self._target:
             self._target = target
             self._cover()
@@ -309,7 +313,7 @@ class RouteDriver(Driver):
     ) -> None:
         super().__init__(agent, comfort, gap)
         self._route = route
-        self._target, self._turn = target, turn
+        self._target, self._turn = speed_to_reach(agent, self._simulation, target), turn
         self._start()
         self.drive_by("keep")
 

@@ -18,7 +18,7 @@ from scenic.domains.driving.right_of_way import Claim
 from scenic.domains.driving.speed_limits import limits_along
 from scenic.domains.driving.speed_profiles import Comfort
 from scenic.domains.driving.trajectories import LaneRoute
-from scenic.language.errors import InvalidScenarioError
+from scenic.domains.driving.wrong_arguments import impossible_argument, wrong_argument
 from scenic.language.spelling import nearest
 
 __all__ = ["RULES", "RulesDriver"]
@@ -94,16 +94,14 @@ class RulesDriver(LaneDriver):
         route: LaneRoute | None = None,
     ) -> None:
         self._route = route
+        if not isinstance(ignore, str | list | tuple | set | frozenset):
+            raise wrong_argument("ignore", "names of rules in a set", ignore)
         self._ignored = frozenset([ignore] if isinstance(ignore, str) else ignore)
         for name in sorted(map(str, self._ignored)):
             if name not in RULES:
                 near = nearest(name, list(RULES))
-                error = InvalidScenarioError(
-                    f"there is no rule {name!r} to ignore",
-                    help=f"did you mean {near!r}?" if near else f"the rules are {', '.join(RULES)}",
-                )
-                error.argument = "ignore"
-                raise error
+                hint = f"did you mean {near!r}?" if near else f"the rules are {', '.join(RULES)}"
+                raise impossible_argument("ignore", f"there is no rule {name!r} to ignore", hint)
         self._halts: list[_Halt] = []
         self._marks = 0
         self._next_check = 0.0

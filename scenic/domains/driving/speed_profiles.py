@@ -12,6 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenic.dataclass import dataclass
+from scenic.language.errors import InvalidScenarioError
+from scenic.runtime.ground.context import here
 
 __all__ = ["Comfort", "speeds_along", "speeds_in_bends"]
 
@@ -57,6 +59,14 @@ class Comfort:
     deceleration: float = 2.5
     jerk: float = 4.0
     lateral_jerk: float = 3.5
+
+    def __post_init__(self) -> None:
+        for name in self.__slots__:
+            value = getattr(self, name)
+            if isinstance(value, int | float) and not value > 0:
+                raise InvalidScenarioError(
+                    f"{name} of `Comfort` must be more than 0, not {value}", span=here()
+                )
 
 
 def speeds_in_bends(

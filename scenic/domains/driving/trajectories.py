@@ -10,9 +10,8 @@ from numpy.typing import NDArray
 from scenic.domains.driving.elements import Lane, LinearElement, Maneuver
 from scenic.domains.driving.maneuvering import intersection_ahead
 from scenic.domains.driving.narrow_lanes import line_to_drive, ways_after
-from scenic.language.errors import InvalidScenarioError
+from scenic.domains.driving.wrong_arguments import impossible_argument, wrong_argument
 from scenic.runtime.regions.lines import PolylineRegion
-from scenic.runtime.values.describing import wrong_type
 from scenic.runtime.values.values import Vector
 
 __all__ = ["LaneRoute", "Route", "Trajectory"]
@@ -81,11 +80,8 @@ class Route:
         elif isinstance(trajectory, list | tuple) and trajectory and all(map(_is_way, trajectory)):
             parts = trajectory
         else:
-            error = wrong_type(
-                "lanes or lines in a list that is not empty, or a `Trajectory`", trajectory, "the trajectory"
-            )
-            error.argument = "trajectory"
-            raise error
+            wanted = "lanes or lines in a list that is not empty, or a `Trajectory`"
+            raise wrong_argument("trajectory", wanted, trajectory, "the trajectory")
         self.parts = tuple(parts)
         self.lines = [_vertices(part) for part in parts]
         last = parts[-1]
@@ -127,9 +123,8 @@ class LaneRoute:
     def __init__(self, trajectory: object) -> None:
         parts = list(trajectory) if isinstance(trajectory, list | tuple) else []
         if not parts or not all(isinstance(part, Lane | Maneuver) for part in parts):
-            error = wrong_type("lanes or maneuvers in a list that is not empty", trajectory, "the trajectory")
-            error.argument = "trajectory"
-            raise error
+            wanted = "lanes or maneuvers in a list that is not empty"
+            raise wrong_argument("trajectory", wanted, trajectory, "the trajectory")
         lanes: list[Lane] = []
         for part in parts:
             ways = (part,) if isinstance(part, Lane) else (part.startLane, part.connectingLane, part.endLane)
@@ -137,12 +132,11 @@ class LaneRoute:
         for before, after in pairwise(lanes):
             if not any(after in _taken_by(way) for way in _ways_from(before)):
                 ends = ", ".join(way.endLane.uid for way in _ways_from(before)) or "none"
-                failure = InvalidScenarioError(
+                raise impossible_argument(
+                    "trajectory",
                     f"the trajectory cannot be driven: {after.uid} does not follow {before.uid}",
-                    help=f"lanes that follow {before.uid}: {ends}",
+                    f"lanes that follow {before.uid}: {ends}",
                 )
-                failure.argument = "trajectory"
-                raise failure
         self.lanes: tuple[Lane, ...] = tuple(lanes)
         self._count = 0
         """The number of lanes that have been taken."""

@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterable, Iterator
 from typing import Any, Final
 
+from scenic.domains.driving.wrong_arguments import wrong_argument
 from scenic.runtime.program.builtins import running_simulation
 
 __all__ = ["arrived", "heading_to", "places_of", "walking_step"]
@@ -38,13 +39,17 @@ def places_of(path: Any) -> list[tuple[float, float]]:
 
     Raises:
         ValueError: there are none.
+        ScenicTypeError: they are something else.
 
     """
     line = getattr(path, "centerline", path)
-    places = [
-        (float(x), float(y))
-        for x, y, *_ in (tuple(_position(item)) for item in getattr(line, "points", line))
-    ]
+    try:
+        places = [
+            (float(x), float(y))
+            for x, y, *_ in (tuple(_position(item)) for item in getattr(line, "points", line))
+        ]
+    except (TypeError, ValueError):
+        raise wrong_argument("path", "places", path, "where to walk") from None
     if not places:
         raise ValueError("a path needs at least one place")
     return places

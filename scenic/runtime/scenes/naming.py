@@ -55,8 +55,8 @@ class DrawName:
     Attributes:
         text: no two draws of a program share it.
         thing: the variable, the parameter or the property with its owner, which several draws may decide together.
-        ends: the values of what is named at 0 and at 1, where it grows evenly with the number drawn.
-        unit: of these values; empty where it is not known.
+        ends: the values of what is named at 0 and at 1, where it grows evenly with the number drawn; else those of the range drawn from.
+        unit: of these values; empty where it is not known; that range, where the values are those of the range.
 
     """
 
@@ -123,6 +123,10 @@ class _Naming:
 
     def __init__(self, graph: Graph) -> None:
         self._graph = graph
+        self._users: dict[Node, list[Node]] = {}
+        for node in graph.nodes:
+            for operand in node.operands:
+                self._users.setdefault(operand, []).append(node)
         self._names: dict[Node, DrawName] = {}
         self._taken: dict[str, int] = {}
 
@@ -159,9 +163,10 @@ class _Naming:
         for place, (axis, (suffix, ends)) in enumerate(zip(axes, parts, strict=True)):
             alike = suffixes.count(suffix)
             which = f" ({suffixes[:place].count(suffix) + 1} of {alike})" if alike > 1 else ""
-            self._names[axis] = DrawName(
-                self._own(f"{text}{suffix}{which}"), text, ends, unit if ends else ""
-            )
+            own_unit = unit if ends else ""
+            if ends is None and (ends := self._drawn_range(axis)) is not None:
+                own_unit = f"of Range({ends[0]:g}, {ends[1]:g})"
+            self._names[axis] = DrawName(self._own(f"{text}{suffix}{which}"), text, ends, own_unit)
 
     def finished(self) -> dict[int, DrawName]:
         """All names, by address."""
@@ -185,6 +190,11 @@ class _Naming:
         """Return the axes below nodes that have no name yet."""
         reached = Graph(nodes).axes if nodes else ()
         return [axis for axis in reached if axis not in self._names]
+
+    def _drawn_range(self, axis: Node) -> tuple[float, float] | None:
+        """Return the ends of a range that an axis alone draws a number from; ``None`` if it draws something else."""
+        users = self._users.get(axis, ())
+        return self._part(users[0], axis)[1] if len(users) == 1 and users[0].kind is Kind.SCALAR else None
 
     def _part(self, node: Node, axis: Node) -> tuple[str, tuple[float, float] | None]:
         """Return the component of a vector that an axis alone moves, and its ends where it does so evenly, whatever the other axes."""

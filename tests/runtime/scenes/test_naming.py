@@ -49,6 +49,14 @@ def test_default_positions_are_those_of_the_object_and_defaults_those_of_the_beh
     assert found["Go.speed"] == ((1, 2), "")
 
 
+def test_a_distance_that_moves_along_no_axis_has_the_values_of_its_range() -> None:
+    found = named(
+        "ego = new Object at (Range(1, 2), 0), facing Range(0, 1)\nbox = new Object ahead of ego by Range(8, 20)\n"
+    )
+    assert found["ego.position.x"] == ((1, 2), "m")
+    assert found["box.position"] == ((8, 20), "of Range(8, 20)")
+
+
 def test_values_are_those_of_scenes() -> None:
     scenario = scenic.scenarioFromString(PROGRAM)
     points = scenic.GivenPoints([[0.25 + 0.01 * place for place in range(len(scenario.axes))]])
