@@ -19,10 +19,10 @@ from scipy.spatial import cKDTree
 import scenic
 from scenic.language.errors import Located
 from scenic.runtime.shapes.shapes import BoxShape
-from scenic.simulators.mujoco.descriptions import Description, read_description
 from scenic.simulators.mujoco.kinematics import forward
 from scenic.simulators.mujoco.library import library, quietly
 from scenic.simulators.mujoco.reaching import _Arm
+from scenic.simulators.mujoco.robot_descriptions import Description, read_description
 
 HERE = Path(__file__).parent
 PROGRAMS = (HERE / "arms" / "cluttered.scenic", HERE / "arms" / "thrown.scenic")

@@ -22,7 +22,7 @@ from scipy.stats import binomtest
 
 import scenic
 from scenic.estimation.estimating import Runs
-from scenic.estimation.requirements import goals_of
+from scenic.estimation.goals import goals_of
 from scenic.runtime.temporal.robustness import joint_margin
 from scenic.statistics.confidence_intervals import exact_interval
 from scenic.statistics.confidence_sequences import is_checked, log_wealth, sequence_interval

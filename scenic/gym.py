@@ -110,7 +110,7 @@ def joint_limits(description: str | Path) -> dict[str, tuple[float, float]]:
         DescriptionError: the file cannot be read.
 
     """
-    from scenic.simulators.mujoco.descriptions import read_description
+    from scenic.simulators.mujoco.robot_descriptions import read_description
 
     joints = read_description(description).joints
     return {name: (max(joint.low, -math.pi), min(joint.high, math.pi)) for name, joint in joints.items()}

@@ -132,8 +132,8 @@ class _EstimateRequest(BatchRequest):
     def runs(self, scenario: "Scenario", seed: int, budget: int | None) -> "Runs":
         """The runs of one setting; ``budget`` is that of a splitting."""
         from scenic.estimation.estimating import Runs
+        from scenic.estimation.goals import goals_of
         from scenic.estimation.importance_sampling import guide_of
-        from scenic.estimation.requirements import goals_of
 
         goals = goals_of(scenario, self.requirements, self.objective, self.expression)
         return Runs(

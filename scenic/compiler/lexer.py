@@ -14,7 +14,7 @@ from itertools import islice
 from typing import ClassVar, Final, NamedTuple
 
 from scenic.compiler import lexemes, lexical_errors
-from scenic.compiler.lines import MOST_DIAGNOSTICS, LineReader, NestedTooDeeplyError
+from scenic.compiler.text_lines import MOST_DIAGNOSTICS, LineReader, NestedTooDeeplyError
 from scenic.compiler.tokens import (
     DEDENT,
     ENDMARKER,

@@ -14,7 +14,6 @@ from typing import Final
 from scenic.compiler import lexemes, lexical_errors
 from scenic.compiler.generated import HARD_KEYWORDS, OPERATORS, WORDS
 from scenic.compiler.lexer import Bracket, Lexer, prepared
-from scenic.compiler.lines import MOST_DIAGNOSTICS, measure
 from scenic.compiler.precedence import SPECIFIERS, Form, Slot
 from scenic.compiler.precedence import Word as Written
 from scenic.compiler.syntax import (
@@ -28,6 +27,7 @@ from scenic.compiler.syntax import (
     TokenKind,
     Word,
 )
+from scenic.compiler.text_lines import MOST_DIAGNOSTICS, measure
 from scenic.compiler.tokens import DEDENT, ERROR, INDENT, NEWLINE, STRING, Tokens
 
 __all__ = ["lex_tolerantly"]

@@ -3,7 +3,7 @@
 from typing import Final
 
 from scenic.estimation.estimate import Asked
-from scenic.estimation.requirements import EstimateError
+from scenic.estimation.goals import EstimateError
 from scenic.runtime.ground.arguments import whole_number
 from scenic.statistics.sequential_test import BoundTest
 

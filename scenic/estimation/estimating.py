@@ -18,8 +18,8 @@ from scenic.estimation.asking import asked_of
 from scenic.estimation.branching import Branching, is_of_law, rare_of, split
 from scenic.estimation.estimate import Asked, Estimate, Tally, requirement_tallies
 from scenic.estimation.estimate_folder import EstimateFolder, joined, manifest_of
+from scenic.estimation.goals import EstimateError, check_labels, goals_of, requirement_labels
 from scenic.estimation.importance_sampling import Guide, guide_of, weighted_of
-from scenic.estimation.requirements import EstimateError, check_labels, goals_of, requirement_labels
 from scenic.falsification.comparing import row_departures
 from scenic.falsification.evaluating import Evaluation, Failures, RunTask, evaluated, evaluated_together
 from scenic.falsification.lineages import Ancestry, Held, Lineage

@@ -18,7 +18,7 @@ from scenic.dataclass import dataclass
 from scenic.falsification.evaluating import RunTask
 from scenic.graph.draws import Words, mix, open_unit, scene_keys, seed_words, words_of
 from scenic.graph.operations.distributions import FIRST, LAST
-from scenic.runtime.dynamics.draws import Draw, Seeded, Source
+from scenic.runtime.dynamics.time_draws import Draw, Seeded, Source
 from scenic.runtime.sampling.rejection_report import Exhausted
 from scenic.runtime.scenes.sampler import DEFAULT_ATTEMPTS
 from scenic.runtime.scenes.saving import draws_of

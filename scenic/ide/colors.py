@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from scenic.compiler import tree as scenic
 from scenic.compiler.traversal import walk
 from scenic.dataclass import dataclass
-from scenic.ide.places import span_of
+from scenic.ide.name_places import span_of
 from scenic.ide.snapshot import Snapshot
 from scenic.language.spans import Span
 

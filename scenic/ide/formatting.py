@@ -20,9 +20,9 @@ from typing import Any, Final
 
 from scenic.compiler.generated import WORDS
 from scenic.compiler.lexer import lex
-from scenic.compiler.lines import measure
 from scenic.compiler.parser import parse, parse_lexed
 from scenic.compiler.scopes import ScopeKind
+from scenic.compiler.text_lines import measure
 from scenic.compiler.tokens import DEDENT, ENDMARKER, FSTRING_MIDDLE, INDENT, NEWLINE, STRING, Tokens
 from scenic.compiler.traversal import first_position, position
 from scenic.compiler.tree import GUARDS

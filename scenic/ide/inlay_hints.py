@@ -10,7 +10,7 @@ from scenic.compiler import tree as scenic
 from scenic.compiler.semantics.model import Model
 from scenic.compiler.traversal import walk
 from scenic.dataclass import dataclass
-from scenic.ide.places import span_of
+from scenic.ide.name_places import span_of
 from scenic.ide.remarks import Remarks, ranges
 from scenic.ide.snapshot import Snapshot
 from scenic.language.names import NAMES

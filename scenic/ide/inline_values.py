@@ -8,7 +8,7 @@ import ast
 from collections.abc import Iterator
 from typing import Final
 
-from scenic.compiler.lowering.instances import instance_name, is_kept
+from scenic.compiler.lowering.instance_names import instance_name, is_kept
 from scenic.compiler.scopes import BindingKind, Scope
 from scenic.compiler.semantics.model import Model
 from scenic.compiler.semantics.modules import Modules

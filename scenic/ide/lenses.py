@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from scenic.compiler import tree as scenic
 from scenic.compiler.traversal import walk
 from scenic.dataclass import dataclass
-from scenic.ide.places import name_span
+from scenic.ide.name_places import name_span
 from scenic.ide.snapshot import Snapshot
 from scenic.language.spans import Span
 

@@ -8,7 +8,7 @@ from typing import Final
 from scenic.compiler.semantics.model import Model
 from scenic.compiler.traversal import walk
 from scenic.dataclass import dataclass
-from scenic.ide.places import span_of
+from scenic.ide.name_places import span_of
 from scenic.ide.snapshot import Snapshot
 from scenic.language.spans import Span
 from scenic.project.index import Project

@@ -2,7 +2,7 @@
 
 from typing import Final
 
-from scenic.ide.places import span_of
+from scenic.ide.name_places import span_of
 from scenic.ide.snapshot import Snapshot
 from scenic.language.spans import Span
 

@@ -13,7 +13,7 @@ from scenic.compiler.semantics.model import Model
 from scenic.compiler.semantics.symbols import SymbolKind, symbol_of_exported
 from scenic.compiler.tokens import FSTRING_END, FSTRING_MIDDLE, FSTRING_START, NAME, NUMBER, STRING
 from scenic.compiler.traversal import walk
-from scenic.ide.places import name_span
+from scenic.ide.name_places import name_span
 from scenic.ide.snapshot import Snapshot
 from scenic.language.names import NAMES, TRACKED, NameKind
 from scenic.project.index import Project

@@ -9,7 +9,7 @@ from typing import Any, Final
 from scenic.compiler import tree as scenic
 from scenic.compiler.traversal import position
 from scenic.dataclass import dataclass
-from scenic.ide.places import name_span, span_of
+from scenic.ide.name_places import name_span, span_of
 from scenic.ide.snapshot import Snapshot
 from scenic.ide.spacing import text_of
 from scenic.language.spans import Span

@@ -21,7 +21,7 @@ from pygls.lsp.server import LanguageServer
 
 from scenic.lsp import parent
 from scenic.lsp.capabilities import options_for
-from scenic.lsp.checks import Checks
+from scenic.lsp.check_schedule import Checks
 from scenic.lsp.handlers import METHODS, handler
 from scenic.lsp.protocol import Protocol, Stage, fault
 from scenic.lsp.reader import MessageReader

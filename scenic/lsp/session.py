@@ -23,12 +23,12 @@ from scenic.language.spans import Span
 from scenic.lsp.convert import Encoding, Lines
 from scenic.lsp.documents import Document, snapshot_of
 from scenic.lsp.garbage import Garbage
+from scenic.lsp.threads import GoOn, Workers
 from scenic.lsp.uris import to_path, to_uri
-from scenic.lsp.workers import GoOn, Workers
 from scenic.project.index import Project
 
 if TYPE_CHECKING:
-    from scenic.lsp.checks import Checks
+    from scenic.lsp.check_schedule import Checks
     from scenic.lsp.protocol import Protocol
 
 __all__ = ["SUFFIXES", "Session"]

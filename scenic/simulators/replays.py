@@ -9,7 +9,7 @@ from typing import Any, Final
 from scenic.dataclass import dataclass
 from scenic.language.errors import DivergenceError, SerializationError
 from scenic.runtime.dynamics.chosen_draws import Sourcing, kept
-from scenic.runtime.dynamics.draws import Draw, Draws, Recorded, Seeded, Source
+from scenic.runtime.dynamics.time_draws import Draw, Draws, Recorded, Seeded, Source
 from scenic.runtime.values.values import Orientation, Vector, is_number
 
 __all__ = ["Conditioned", "Replay", "Tape", "fresh_key"]

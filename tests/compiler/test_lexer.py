@@ -9,7 +9,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from scenic.compiler.lexer import lex
-from scenic.compiler.lines import MOST_DIAGNOSTICS
+from scenic.compiler.text_lines import MOST_DIAGNOSTICS
 from scenic.compiler.tokens import DEDENT, ENDMARKER, ERROR, INDENT, NAME
 from tests.compiler.python_tokens import WORDS, of_tokenize, rows, with_whole_formatted_strings
 

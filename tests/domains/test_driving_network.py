@@ -141,7 +141,7 @@ def test_maneuvers_of_a_crossing(crossing: Network) -> None:
 
 
 def test_turn_types_follow_the_accumulated_angle() -> None:
-    from scenic.domains.driving.kinds import turned
+    from scenic.domains.driving.enumerations import turned
 
     angles = np.linspace(0, math.radians(200), 50)
     assert turned(np.stack([np.cos(angles), np.sin(angles)], axis=1)) == pytest.approx(

@@ -10,7 +10,7 @@ import shapely
 
 import scenic
 from scenic.domains.driving.controllers import PurePursuitLateralController
-from scenic.domains.driving.lines import FollowedLine
+from scenic.domains.driving.followed_lines import FollowedLine
 from scenic.domains.driving.roads import Network
 from scenic.domains.driving.trajectories import Route, Trajectory
 from tests.maps import RoadText, cross, map_text, piece, straight, two_way

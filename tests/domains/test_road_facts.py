@@ -8,7 +8,7 @@ from xml.etree import ElementTree
 import pytest
 
 import scenic
-from scenic.domains.driving.kinds import ManeuverType
+from scenic.domains.driving.enumerations import ManeuverType
 from scenic.domains.driving.roads import Network
 from tests.maps import RoadText, cross, lane, lanes, line, map_text, straight
 

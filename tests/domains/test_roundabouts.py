@@ -7,7 +7,7 @@ import pytest
 
 from examples import make_roads
 from scenic.domains.driving.drawing import svg
-from scenic.domains.driving.kinds import ManeuverType
+from scenic.domains.driving.enumerations import ManeuverType
 from scenic.domains.driving.roads import Network
 from scenic.domains.driving.roundabouts import roundabouts
 from tests.cli.commands import run_here

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import scenic
-from scenic.domains.driving.kinds import ManeuverType
+from scenic.domains.driving.enumerations import ManeuverType
 from scenic.domains.driving.right_of_way import Claim, RightOfWay, comes_first
 from scenic.domains.driving.roads import Network
 from scenic.domains.driving.roundabouts import roundabouts

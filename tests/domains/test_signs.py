@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from scenic.domains.driving.kinds import ManeuverType
+from scenic.domains.driving.enumerations import ManeuverType
 from scenic.domains.driving.roads import Network
 from tests.maps import RoadText, cross, lane, lanes, line, map_text, straight, two_way
 

@@ -11,12 +11,12 @@ from scipy.stats import kstest
 
 import scenic
 from scenic.estimation.estimate import Estimate
-from scenic.estimation.requirements import EstimateError
+from scenic.estimation.goals import EstimateError
 from scenic.estimation.sentences import notes
 from scenic.falsification.lineages import Ancestry, Descent, Lineage, LineageStep
 from scenic.falsification.replaying import kept_run, replay
 from scenic.falsification.search_folder import read_rows
-from scenic.runtime.dynamics.draws import Draw, Seeded
+from scenic.runtime.dynamics.time_draws import Draw, Seeded
 from tests.estimation.test_estimating import BRAKE, rows_of
 
 TAIL = """

@@ -10,7 +10,7 @@ from scipy.stats import binomtest
 import scenic
 from scenic.estimation.estimate import Asked, Estimate, Tally
 from scenic.estimation.estimating import asked_of, load_estimate
-from scenic.estimation.requirements import EstimateError
+from scenic.estimation.goals import EstimateError
 from scenic.falsification.evaluating import SearchError
 from scenic.falsification.objectives import ObjectiveError
 from scenic.falsification.replaying import kept_run, replay

@@ -10,8 +10,8 @@ import scenic
 from scenic.language.errors import Located
 from scenic.simulators.mujoco import MujocoSimulator
 from scenic.simulators.mujoco.articulated import description_of, origin_of
-from scenic.simulators.mujoco.descriptions import DescriptionError, read_description
 from scenic.simulators.mujoco.kinematics import forward
+from scenic.simulators.mujoco.robot_descriptions import DescriptionError, read_description
 
 mujoco = pytest.importorskip("mujoco")
 

@@ -7,7 +7,7 @@ import pytest
 from scipy.stats import chisquare
 
 import scenic
-from scenic.runtime.dynamics.draws import Draw, Recorded, Seeded
+from scenic.runtime.dynamics.time_draws import Draw, Recorded, Seeded
 from scenic.simulators.dummy import DummySimulator
 from scenic.simulators.simulation import Simulation
 

@@ -10,7 +10,7 @@ from scipy.stats import kstest, qmc
 
 import scenic
 from scenic.language.errors import ScenicWarning
-from scenic.runtime.dynamics.draws import Draw
+from scenic.runtime.dynamics.time_draws import Draw
 from scenic.simulators.dummy import DummySimulator
 from scenic.simulators.numbered_simulations import simulate_number
 

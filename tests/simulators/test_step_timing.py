@@ -8,7 +8,7 @@ import pytest
 
 import scenic
 from scenic.language.errors import ScenicTypeError, ScenicValueError
-from scenic.runtime.dynamics.draws import Draw, Seeded
+from scenic.runtime.dynamics.time_draws import Draw, Seeded
 from scenic.simulators.dummy import DummySimulation, DummySimulator
 from scenic.simulators.results import TerminationType
 from tests.simulators.test_simulations import scene_of, simulate, taken

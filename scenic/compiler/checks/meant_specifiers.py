@@ -6,7 +6,7 @@ from typing import Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.context import CheckContext
-from scenic.compiler.checks.continuations import continuation_after
+from scenic.compiler.checks.misplaced_specifiers import continuation_after
 from scenic.compiler.traversal import position
 from scenic.language.diagnostics import Diagnostic, Edit, Fix
 from scenic.language.spans import Span

@@ -24,7 +24,7 @@ from scenic.compiler.lowering.build import (
 )
 from scenic.compiler.lowering.conditions import Conditions, assigns, implicit_ego, truth_value
 from scenic.compiler.lowering.dynamics import Blocks
-from scenic.compiler.lowering.instances import instance_name, is_kept
+from scenic.compiler.lowering.instance_names import instance_name, is_kept
 from scenic.compiler.scopes import Binding, Resolution
 from scenic.language.errors import InternalError
 from scenic.language.names import CONVERSIONS, TRACKED

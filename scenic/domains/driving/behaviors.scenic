@@ -4,14 +4,14 @@ from scenic.domains.driving.actions import *
 from scenic.domains.driving.car_following import Gap
 from scenic.domains.driving.lane_changing import LaneChanger
 from scenic.domains.driving.lane_driving import LaneDriver, RouteDriver
-from scenic.domains.driving.lines import concatenateCenterlines
+from scenic.domains.driving.followed_lines import concatenateCenterlines
 from scenic.domains.driving.maneuvering import nearest_end, sidewalk_under
 from scenic.domains.driving.rules import RulesDriver
 from scenic.domains.driving.speed_profiles import Comfort
 from scenic.domains.driving.trajectories import LaneRoute, Route, Trajectory
 from scenic.domains.driving.u_turns import FASTEST, UTurner
 from scenic.domains.driving.walking import arrived, heading_to, places_of, walking_step
-from scenic.domains.driving.watching import InsideWatch, Nearness
+from scenic.domains.driving.place_queries import InsideWatch, Nearness
 
 
 behavior ConstantThrottleBehavior(x):

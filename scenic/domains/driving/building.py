@@ -20,13 +20,13 @@ from scenic.domains.driving.elements import (
     Shoulder,
     Sidewalk,
 )
-from scenic.domains.driving.kinds import VehicleType
+from scenic.domains.driving.enumerations import VehicleType
 from scenic.domains.driving.network import RoadNetwork
 from scenic.domains.driving.signs import signal_of
 from scenic.domains.driving.speed_limits import lowest, ranges_of, road_speeds, section_speeds
 from scenic.formats.opendrive import records
 from scenic.formats.opendrive.records import MapProblem, MapRecords
-from scenic.formats.opendrive.shapes import RoadShape, SectionShape, joined, road_shape
+from scenic.formats.opendrive.sampled_lanes import RoadShape, SectionShape, joined, road_shape
 
 __all__ = ["BuiltRoad", "LaneTypes", "build_roads"]
 

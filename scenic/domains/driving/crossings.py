@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from scenic.domains.driving.building import BuiltRoad, Tell, area_of
 from scenic.domains.driving.elements import Intersection, PedestrianCrossing, Road, Sidewalk
-from scenic.domains.driving.kinds import VehicleType
+from scenic.domains.driving.enumerations import VehicleType
 from scenic.domains.driving.network import RoadNetwork
 from scenic.formats.opendrive.curves import Curve, cubic_values
 from scenic.formats.opendrive.records import Crosswalk, MapProblem

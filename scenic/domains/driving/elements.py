@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from scenic.domains.driving.kinds import ManeuverType, VehicleType
+from scenic.domains.driving.enumerations import ManeuverType, VehicleType
 from scenic.domains.driving.levels import Ground
 from scenic.domains.driving.line_directions import Segments, share_along
 from scenic.domains.driving.signs import Signal, halt_point_ahead

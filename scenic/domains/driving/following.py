@@ -19,10 +19,10 @@ from scenic.domains.driving.car_following import (
 )
 from scenic.domains.driving.path_smoothing import TIGHTEST
 from scenic.domains.driving.paths import Path
+from scenic.domains.driving.place_queries import InsideWatch
 from scenic.domains.driving.planning import Pace, join, speeds_of
 from scenic.domains.driving.running_traffic import ADVICE, running_traffic
 from scenic.domains.driving.speed_profiles import Comfort
-from scenic.domains.driving.watching import InsideWatch
 from scenic.domains.driving.wrong_arguments import wrong_argument
 from scenic.language.errors import InvalidScenarioError
 

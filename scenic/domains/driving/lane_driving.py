@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from scenic.domains.driving.actions import RegulatedControlAction
 from scenic.domains.driving.car_following import Gap
 from scenic.domains.driving.elements import Lane
+from scenic.domains.driving.enumerations import ManeuverType
 from scenic.domains.driving.following import Driver
-from scenic.domains.driving.kinds import ManeuverType
 from scenic.domains.driving.paths import Path
 from scenic.domains.driving.planning import MotionPlan, speeds_of
 from scenic.domains.driving.speed_profiles import Comfort

@@ -14,7 +14,7 @@ from scenic.domains.driving.elements import (
     Maneuver,
     PedestrianCrossing,
 )
-from scenic.domains.driving.kinds import ManeuverType
+from scenic.domains.driving.enumerations import ManeuverType
 from scenic.domains.driving.network import RoadNetwork
 from scenic.domains.driving.signals import TrafficLights
 from scenic.domains.driving.signs import Signal

@@ -17,7 +17,7 @@ from scenic.domains.driving.storing import KIND, restored, stored
 from scenic.formats.opendrive.problems import told
 from scenic.formats.opendrive.reader import read_map
 from scenic.formats.opendrive.records import MapProblem
-from scenic.formats.opendrive.shapes import MAX_ERROR
+from scenic.formats.opendrive.sampled_lanes import MAX_ERROR
 from scenic.formats.opendrive.xml_tree import MapError
 from scenic.language.diagnostics import Diagnostic, Severity
 from scenic.language.garbage import no_garbage_collection

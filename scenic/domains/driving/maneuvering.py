@@ -4,7 +4,7 @@ import math
 from typing import Any
 
 from scenic.domains.driving.elements import Lane, Maneuver, NetworkElement, Sidewalk
-from scenic.domains.driving.kinds import ManeuverType
+from scenic.domains.driving.enumerations import ManeuverType
 from scenic.runtime.program.builtins import running_simulation
 from scenic.runtime.values.values import Vector
 

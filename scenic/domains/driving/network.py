@@ -21,9 +21,9 @@ from scenic.domains.driving.elements import (
     Sidewalk,
 )
 from scenic.domains.driving.elevation import Elevation
+from scenic.domains.driving.followed_lines import joined_ground
 from scenic.domains.driving.joined_surfaces import JoinedSurface
 from scenic.domains.driving.levels import Levels
-from scenic.domains.driving.lines import joined_ground
 from scenic.domains.driving.lookups import Finder, RoadDirection
 from scenic.domains.driving.path_smoothing import TIGHTEST
 from scenic.domains.driving.paths import PathPieces

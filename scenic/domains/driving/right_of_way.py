@@ -6,7 +6,7 @@ from typing import Any, Final
 
 from scenic.dataclass import dataclass
 from scenic.domains.driving.elements import Maneuver
-from scenic.domains.driving.kinds import ManeuverType
+from scenic.domains.driving.enumerations import ManeuverType
 from scenic.domains.driving.network import RoadNetwork
 from scenic.domains.driving.roundabouts import roundabouts
 

@@ -22,7 +22,7 @@ from scenic.domains.driving.elements import (
     Sidewalk,
     Signal,
 )
-from scenic.domains.driving.kinds import ManeuverType, VehicleType
+from scenic.domains.driving.enumerations import ManeuverType, VehicleType
 from scenic.domains.driving.loading import load_network
 from scenic.domains.driving.network import RoadNetwork
 from scenic.domains.driving.storing import KIND, restored, stored

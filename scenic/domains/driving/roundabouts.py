@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from scenic.dataclass import dataclass
 from scenic.domains.driving.elements import Lane
-from scenic.domains.driving.kinds import turned
+from scenic.domains.driving.enumerations import turned
 from scenic.domains.driving.network import RoadNetwork
 
 __all__ = ["Roundabout", "roundabouts"]

@@ -27,7 +27,7 @@ from scenic.domains.driving.elements import (
     Sidewalk,
 )
 from scenic.domains.driving.elevation import Elevation, RoadHeight
-from scenic.domains.driving.kinds import ManeuverType, VehicleType
+from scenic.domains.driving.enumerations import ManeuverType, VehicleType
 from scenic.domains.driving.network import RoadNetwork
 from scenic.domains.driving.signs import Placement, Signal
 from scenic.formats.opendrive.records import Cubic, LateralShape

@@ -8,11 +8,11 @@ from typing import Final
 from lsprotocol import types
 
 from scenic.configuration.project import Configurations
-from scenic.lsp.checks import finder, found_in_document
+from scenic.lsp.check_schedule import finder, found_in_document
 from scenic.lsp.progress import Partial, Progress
 from scenic.lsp.session import SUFFIXES, Session
+from scenic.lsp.threads import GoOn
 from scenic.lsp.uris import to_uri
-from scenic.lsp.workers import GoOn
 from scenic.project.index import Project
 
 __all__ = ["HANDLERS"]

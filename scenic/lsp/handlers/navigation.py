@@ -15,8 +15,8 @@ from scenic.ide.symbols import OutlineKind, flat, matches, symbols
 from scenic.lsp.handlers.information import Placed, place_of
 from scenic.lsp.progress import Partial, Progress
 from scenic.lsp.session import Session
+from scenic.lsp.threads import GoOn
 from scenic.lsp.uris import to_path
-from scenic.lsp.workers import GoOn
 from scenic.project.index import Project
 
 __all__ = ["HANDLERS", "KINDS"]

@@ -15,7 +15,7 @@ from scenic.lsp.capabilities import COMMANDS, SAMPLE, SIMULATE
 from scenic.lsp.documents import Document
 from scenic.lsp.progress import Progress
 from scenic.lsp.session import Session
-from scenic.lsp.workers import GoOn
+from scenic.lsp.threads import GoOn
 
 __all__ = ["HANDLERS"]
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from scenic.graph.draws import LaneOwners
 from scenic.graph.points import PointSet
-from scenic.runtime.dynamics.draws import Draw, Source
+from scenic.runtime.dynamics.time_draws import Draw, Source
 
 __all__ = ["Sourcing", "driven", "kept"]
 

@@ -13,11 +13,11 @@ from scenic.runtime.description.mutation import mutate_now
 from scenic.runtime.description.outcome import Program
 from scenic.runtime.dynamics.activations import Activation, Termination
 from scenic.runtime.dynamics.copies import Copies
-from scenic.runtime.dynamics.draws import Draws, Source
 from scenic.runtime.dynamics.recording import Recording
 from scenic.runtime.dynamics.requirements import Followed
 from scenic.runtime.dynamics.run_context import RunContext
 from scenic.runtime.dynamics.scenarios import ScenarioActivation
+from scenic.runtime.dynamics.time_draws import Draws, Source
 from scenic.runtime.ground.context import Locator, Namer, current, here, warn
 from scenic.runtime.instances.objects import Object
 

@@ -18,8 +18,14 @@ from scenic.runtime.program.veneer import At, With, new
 from scenic.runtime.shapes.shapes import BoxShape, MeshShape, Shape
 from scenic.runtime.values.generic import support_of
 from scenic.runtime.values.values import Vector, apply, operate, to_scalar
-from scenic.simulators.mujoco.descriptions import BASE, Description, DescriptionError, Link, read_description
 from scenic.simulators.mujoco.kinematics import Floats, Segment, forward
+from scenic.simulators.mujoco.robot_descriptions import (
+    BASE,
+    Description,
+    DescriptionError,
+    Link,
+    read_description,
+)
 
 __all__ = [
     "assemble",

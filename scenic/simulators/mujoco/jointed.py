@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from scenic.graph import quaternions
 from scenic.language.errors import ScenicValueError
 from scenic.simulators.mujoco.articulated import description_of, origin_of
-from scenic.simulators.mujoco.descriptions import Description
 from scenic.simulators.mujoco.library import library
+from scenic.simulators.mujoco.robot_descriptions import Description
 
 __all__ = ["Jointed", "attach"]
 

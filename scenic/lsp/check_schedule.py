@@ -22,8 +22,8 @@ from scenic.language.source import Source, read_source
 from scenic.lsp.convert import Lines, to_diagnostic
 from scenic.lsp.documents import Document
 from scenic.lsp.session import Session
+from scenic.lsp.threads import GoOn
 from scenic.lsp.uris import to_uri
-from scenic.lsp.workers import GoOn
 from scenic.project.index import Project
 
 __all__ = ["Checks"]

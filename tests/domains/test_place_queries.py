@@ -11,9 +11,9 @@ import shapely.affinity
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from scenic.domains.driving.lines import FollowedLine
+from scenic.domains.driving.followed_lines import FollowedLine
+from scenic.domains.driving.place_queries import InsideWatch, Nearness
 from scenic.domains.driving.roads import Network
-from scenic.domains.driving.watching import InsideWatch, Nearness
 from scenic.runtime.shapes.shapes import BoxShape
 from scenic.runtime.values.values import Vector
 from tests.maps import cross
