@@ -159,7 +159,7 @@ def _freeze(cls: type[Any]) -> None:
 
 
 def _field_values(self: Any) -> list[Any]:
-    """Values by which an instance of a frozen class with slots is pickled."""
+    """Return the values by which an instance of a frozen class with slots is pickled."""
     return [getattr(self, item.name) for item in dataclasses.fields(self)]
 
 

@@ -38,7 +38,7 @@ _STATEMENTS: Final = "With ego globalParameters in_initial_scenario isActive loc
 
 
 def _functions() -> str:
-    """Operators and specifiers as functions."""
+    """Return the names of the functions that operators and specifiers are."""
     functions = [element.functions for element in OPERATORS.values()]
     functions += [element.functions for element in SPECIFIERS.values()]
     return " ".join(function.name for each in functions for function in each)

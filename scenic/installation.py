@@ -57,7 +57,7 @@ def _package() -> InstallationFinding:
 
 
 def _rivals() -> Iterator[InstallationFinding]:
-    """Other distributions that bring a package of the same name: which one is imported is then a matter of luck."""
+    """Yield other distributions that bring a package of the same name: which one is imported is then a matter of luck."""
     for name in sorted(set(metadata.packages_distributions().get("scenic", [])) - {"scenic-lang"}):
         yield InstallationFinding(
             name,

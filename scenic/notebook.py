@@ -161,7 +161,7 @@ def _explain(
 
 
 def _diagnostics_text(diagnostics: Sequence[Diagnostic]) -> list[str]:
-    """Diagnostics as lines of text."""
+    """Return diagnostics as lines of text."""
     lines = []
     for item in diagnostics:
         place = f", line {item.span.line}" if item.span else ""

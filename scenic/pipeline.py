@@ -336,9 +336,9 @@ class _Ran:
 
 
 def _scenario(text: str, filename: str, options: _Options, *, keep: bool = False) -> Scenario:
-    """From text to scenario: compile, run, outline, contract."""
-    compiled = _compiled(text, filename, keep=keep)
-    ran = _run(compiled.code, text, filename, options)
+    """Make a scenario from a text: compile, run, outline, contract."""
+    program_code = _compiled(text, filename, keep=keep)
+    ran = _run(program_code.code, text, filename, options)
     scenario = Scenario(
         ran.program,
         ran.outline,
@@ -349,7 +349,7 @@ def _scenario(text: str, filename: str, options: _Options, *, keep: bool = False
         names=ran.names,
         regions=ran.regions,
         sampler=prepared_sampler(ran.outline, prune=options.prune),
-        digest=cache(partial(options.digest, text, compiled.bare_text)),
+        digest=cache(partial(options.digest, text, program_code.bare_text)),
         options=options.given(),
     )
     promote_young()
@@ -528,7 +528,7 @@ def _settle_parameters(program: Program, *, strict: bool) -> None:
 
 
 def _names(module: ModuleType, ego: Object | None) -> Mapping[int, str]:
-    """Variables of the module that hold instances."""
+    """Return the variables of the module that contain instances, by the identity of the instance."""
     names: dict[int, str] = {}
     for name, value in vars(module).items():
         if isinstance(value, Point):
@@ -543,7 +543,7 @@ def _names(module: ModuleType, ego: Object | None) -> Mapping[int, str]:
 
 
 def _regions(module: ModuleType) -> dict[str, Region]:
-    """Variables of the module that hold regions with bounds; the workspace is known as such."""
+    """Return the regions that variables of the module contain, by name; the workspace, `everywhere` and `nowhere` are left out."""
     return {
         name: value
         for name, value in vars(module).items()

@@ -150,9 +150,9 @@ class _Content:
             self._named(value)
         elif kind.__module__.startswith(_PACKAGE):
             self._word(f"instance {kind.__module__}.{kind.__qualname__}")
-            known = getattr(value, "content_digest", None)
-            if type(known) is bytes:
-                self._word(known.hex())
+            digest = getattr(value, "content_digest", None)
+            if type(digest) is bytes:
+                self._word(digest.hex())
                 return
             for name, item in _state(value, kind):
                 self._word(name)
@@ -170,22 +170,22 @@ class _Content:
         self._word(f"function {value.__module__}.{value.__qualname__} {code.co_firstlineno}")
         self._word(code.co_code.hex())
         try:
-            enclosed = tuple(cell.cell_contents for cell in value.__closure__ or ())
+            cell_values = tuple(cell.cell_contents for cell in value.__closure__ or ())
         except ValueError:  # not there yet
             raise _UnknownError from None
         self.add((value.__defaults__, value.__kwdefaults__))
-        for item in enclosed:
+        for item in cell_values:
             self.add(item)
 
     def _named(self, value: Any) -> None:
         """Digest a value by its name in a module of this package, of Python or of NumPy."""
         module = getattr(value, "__module__", None) or "numpy"
         name = getattr(value, "__qualname__", value.__name__)
-        found: Any = sys.modules.get(module)
+        member: Any = sys.modules.get(module)
         for part in name.split("."):
-            found = getattr(found, part, None)
+            member = getattr(member, part, None)
         top = module.partition(".")[0]
-        if found is not value or not (top in ("scenic", "numpy") or top in sys.stdlib_module_names):
+        if member is not value or not (top in ("scenic", "numpy") or top in sys.stdlib_module_names):
             raise _UnknownError
         self._word(f"named {module}.{name}")
 

@@ -103,7 +103,7 @@ def _same(
 
 
 def _marks(scenario: Scenario) -> dict[str, str]:
-    """Digests of the scenario's files, of the modules beside it that are loaded, and of its graph."""
+    """Return digests of the scenario's files, of the modules beside it that are loaded, and of its graph."""
     files = {f"file '{name}'": digest for name, digest in file_digests(scenario, modules=False).items()}
     folder = Path(scenario.filename).absolute().parent
     modules = {f"module '{module.__name__}'": _module_digest(module) for module in _modules_in(folder)}

@@ -249,7 +249,7 @@ class Simulations:
         return None if self._folder is None else self._folder / f"simulation-{k:04d}.{self._form}"
 
     def _settings(self) -> dict[str, Any]:
-        """Everything that a simulation depends on beside its number."""
+        """Return what a simulation depends on beside its number."""
         return {
             "program": self._scenario.digest,
             "simulator": type(self.simulator).__name__,
@@ -291,7 +291,7 @@ class Simulations:
             return SimulationRow(k, about=about, page=keeper.finish(simulation, about) if is_kept else None)
 
     def _simulated(self, k: int, kept: SimulationRecord) -> "Numbered":
-        """Simulation ``k``, with its whole course in memory if the program's text looks back at it.
+        """Run simulation ``k``, with its whole course in memory if the program's text looks back at it.
 
         Code elsewhere may do so, too: then the simulation is made again. Each simulation decides this for itself, so that
         files do not depend on which simulations a process makes.

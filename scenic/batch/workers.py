@@ -162,7 +162,7 @@ def _door(connection: Connection) -> socket.socket:
 
 @contextlib.contextmanager
 def _no_interruption() -> Iterator[None]:
-    """Blocks Ctrl-C in a new process by inheritance, until the process reports that it ignores it."""
+    """Block Ctrl-C in a new process by inheritance, until the process reports that it ignores it."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return

@@ -75,11 +75,11 @@ def _show(found: "Assessment") -> None:
     values.add_column("name", no_wrap=True)
     for heading in ("value", "line", "before", "after", "removed"):
         values.add_column(heading, overflow="fold")
-    shown = [row for row in found.values if not row.is_idle]
-    for row in shown:
+    rows_in_use = [row for row in found.values if not row.is_idle]
+    for row in rows_in_use:
         line = "" if row.line is None else str(row.line)
         values.add_row(row.name, row.text, line, row.before, row.after, f"{row.support.removed:.1%}")
-    if shown:
+    if rows_in_use:
         console.print(values)
     if found.idle is not None:
         console.print(found.idle, soft_wrap=True, markup=False)

@@ -96,14 +96,14 @@ def check(paths: tuple[str, ...], **options: Any) -> int:
     Exit codes: 0 clean, 1 findings (errors or warnings; with --diff: something to repair), 2 wrong usage, or a file
     that cannot be read, 70 an internal error, 130 interrupted.
     """
-    chosen = _Options(**options)
-    parts = {_INPUT: STANDARD_INPUT in paths, _TEXT: chosen.output_format == "text"}
-    parts |= {_DIFF: chosen.diff, _FIX: chosen.fix, _NO_CONFIG: chosen.no_config}
+    request = _Options(**options)
+    parts = {_INPUT: STANDARD_INPUT in paths, _TEXT: request.output_format == "text"}
+    parts |= {_DIFF: request.diff, _FIX: request.fix, _NO_CONFIG: request.no_config}
     check_parts([part for part, is_chosen in parts.items() if is_chosen], [_TEXT])
-    if chosen.watching:
+    if request.watching:
         context = click.get_current_context()
         watch(paths, lambda: context.invoke(context.command, **{**context.params, "watching": False}))
-    return _checked(paths, chosen)
+    return _checked(paths, request)
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,16 +159,16 @@ def _checked(paths: tuple[str, ...], options: _Options) -> int:
     code = exit_code(diagnostics, failing=_FAILING)
     if options.exit_zero and code == FINDINGS:
         code = 0
-    repaired = [
+    tasks_with_texts = [
         (task, outcome.text)
         for task, outcome in zip(tasks, outcomes, strict=True)
         if outcome.text is not None
     ]
-    for task, text in repaired:
+    for task, text in tasks_with_texts:
         # Standard output is for the repaired text; what is left to say goes beside it.
         sources.add(Source(text, task.filename))
         sys.stdout.write(text)
-    if repaired:
+    if tasks_with_texts:
         show_diagnostics(diagnostics, sources)
         return code
     colours = options.output_file is None and has_colours(sys.stdout)
@@ -303,7 +303,7 @@ def _lost(task: CheckTask, code: int) -> CheckOutcome:
 
 @contextmanager
 def _progress(count: int) -> "Iterator[_Advance]":
-    """A line of progress on the error stream, if this is a terminal and the check takes long."""
+    """Show a line of progress on the error stream, if this is a terminal and the check takes long."""
     advance = _Advance(count)
     try:
         yield advance

@@ -58,7 +58,7 @@ def info(folder: Path) -> int:
 
 
 def _manifest_at(place: Path) -> "Manifest":
-    """The manifest of a folder, or of a Parquet file that `scenic sample -o FILE.parquet` has written."""
+    """Return the manifest of a folder, or of a Parquet file that `scenic sample -o FILE.parquet` has written."""
     from scenic.batch.manifest import DatasetError, Manifest
     from scenic.batch.part_files import manifest_of_table
 
@@ -116,7 +116,7 @@ def verify(folder: Path, program: str | None, share: str) -> int:
 
 
 def _mending(folder: Path, manifest: "Manifest") -> str:
-    """The command that makes damaged parts of a data set again."""
+    """Return the command that makes damaged parts of a data set again."""
     import shlex
 
     program = os.path.relpath(folder / manifest.source)

@@ -143,7 +143,7 @@ class _EstimateRequest(BatchRequest):
         )  # fmt: skip
 
     def _held(self, scenario: "Scenario", seed: int) -> "Held | None":
-        """The scene that all runs have, if there is one."""
+        """Return the scene that all runs have, if there is one."""
         from scenic.estimation.estimating import held_of
 
         if self.hold is None:

@@ -48,7 +48,7 @@ def explain(code: str | None) -> None:
 
 
 def _known(written: str) -> str:
-    """The code that a user has written in some way: `sc111`, `111`, `error[SC111]`."""
+    """Return the code that a user has written in some way: `sc111`, `111`, `error[SC111]`."""
     name = written.strip().upper()
     match = re.search(r"\[(.*)\]", name)
     if match is not None:
@@ -83,7 +83,7 @@ def _all_codes(colours: bool) -> Iterator[str]:
 
 
 def _rendered(text: str, colours: bool) -> Iterator[str]:
-    """A page as it is for a file or another program, or with colours in place of its marks for a terminal."""
+    """Yield the lines of a page: unchanged for a file or another program, with colours in place of marks for a terminal."""
     if not colours:
         yield from text.rstrip("\n").split("\n")
         return
@@ -102,7 +102,7 @@ def _rendered(text: str, colours: bool) -> Iterator[str]:
 
 
 def _inline(line: str, colours: bool) -> str:
-    """A line of text, in which code is coloured instead of quoted."""
+    """Return a line of text in which code is coloured instead of quoted."""
     return re.sub(r"`([^`]+)`", rf"{_CODE}\1{_RESET}", line) if colours else line
 
 

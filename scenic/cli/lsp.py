@@ -36,7 +36,7 @@ def lsp(stdio: bool, tcp: str | None, websocket: str | None, origins: tuple[str,
 
 
 def _address(text: str) -> tuple[str, int]:
-    """Host and port; without a host, this machine alone."""
+    """Return host and port; without a host, this machine alone."""
     host, _, port = text.rpartition(":")
     if not (port.isascii() and port.isdigit()) or int(port) > 65535:
         raise click.BadParameter(f"{text!r} is no port: write a number up to 65535, or HOST:PORT")

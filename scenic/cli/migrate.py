@@ -93,14 +93,14 @@ def _write(files: Sequence[MigratedFile]) -> tuple[int, list[Diagnostic]]:
 
 
 def _roots(paths: Sequence[str]) -> list[str]:
-    """The folders in which modules and maps are looked for."""
+    """Return the folders in which modules and maps are searched for."""
     return [
         path if os.path.isdir(path) else os.path.dirname(path) or os.curdir for path in paths or (os.curdir,)
     ]
 
 
 def _beside(paths: Sequence[str]) -> Iterator[str]:
-    """The Python, JSON and Markdown files of the folders that are named."""
+    """Yield the Python, JSON and Markdown files of the folders that are named."""
     for path in paths or (os.curdir,):
         if not os.path.isdir(path):
             continue
@@ -126,7 +126,7 @@ def _patch(file: MigratedFile) -> str:
 
 
 def _decisions(files: Sequence[MigratedFile]) -> Iterator[str]:
-    """The decisions that are left to a person, by rule."""
+    """Yield the decisions that are left to a person, by rule."""
     for rule in RULES.values():
         places = [
             (file, note)

@@ -103,7 +103,7 @@ def translated(arguments: Sequence[str], commands: Sequence[str]) -> list[str] |
 
 
 def _whole(value: str) -> str:
-    """A parameter's value as it is written here: text in which a comma or quotation mark has no meaning is quoted."""
+    """Quote a parameter's value for this command line where a comma or quotation mark in it has no meaning."""
     return json.dumps(value) if "," in value or value[:1] == '"' else value
 
 

@@ -229,7 +229,7 @@ def look_from_option(of: str = "images") -> Callable[[_Command], _Command]:
 
 
 def _outlook(_context: click.Context, _option: click.Parameter, given: str | None) -> Mapping[str, float]:
-    """Azimuth and elevation of a camera, as an `Outlook` takes them."""
+    """Return azimuth and elevation of a camera, as an `Outlook` takes them."""
     if given is None:
         return {}
     if given == "above":

@@ -200,7 +200,7 @@ def _write_page(view: Path, page: str, follow: str | None, *, opened: bool) -> N
 
 
 def _camera(outlook: Mapping[str, Any], follow: str | None, around: float | None) -> "Outlook":
-    """The camera of images and films, which may follow an object."""
+    """Return the camera of images and films, which may follow an object."""
     from scenic.formats.camera import Outlook
     from scenic.formats.chase_cameras import BEHIND
 

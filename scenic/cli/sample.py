@@ -79,7 +79,7 @@ def sample(**options: Any) -> int:
 
 
 def _takers(request: SampleRequest) -> "list[sinks.Sink]":
-    """The sinks that take scenes one by one; all outputs are checked, before anything is sampled."""
+    """Return the sinks that take scenes one by one; all outputs are checked before anything is sampled."""
     parts = sink_parts(request).values()
     for part in parts:
         part.check(request)
@@ -87,7 +87,7 @@ def _takers(request: SampleRequest) -> "list[sinks.Sink]":
 
 
 def _loaded(request: SampleRequest) -> "Scenario":
-    """The program, whose textures are read if there will be pictures."""
+    """Load the program, and read its textures if there will be pictures."""
     scenario = request.load(
         request.parameters,
         prune=not request.no_prune,

@@ -142,7 +142,7 @@ def sink_parts(request: "SampleRequest") -> dict[str, SampleSink]:
 
 
 def _named_sink(request: "SampleRequest") -> str:
-    """The sink that the option ``-o`` names; names without a known ending are lines, which refuse them."""
+    """Return the sink that the option ``-o`` names; names without a known ending are lines, which refuse them."""
     if sinks.is_dataset(request.output):
         return "worlds" if request.form in SINKS["worlds"].forms else "dataset"
     path = _place(request)

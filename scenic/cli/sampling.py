@@ -68,14 +68,14 @@ class _Batch:
     lost: int = 0
 
     def job(self, done: int = 0) -> Job:
-        """The scenes after the first ``done``."""
+        """Return the job of the scenes after the first ``done``."""
         request = self.request
         first, last = request.first + done, request.first + request.count
         method = method_of(request.points)
         return Job(self.seed, first, last, request.max_attempts, self.deadline, **method)
 
     def scenes(self, done: int = 0) -> "Iterator[Scene]":
-        """The scenes after the first ``done``, made in this process; others are noted as missing."""
+        """Yield the scenes after the first ``done``, made in this process; others are recorded as missing."""
         request = self.request
         if request.sampler is None:
             results = results_of(self.scenario, self.job(done))
@@ -95,7 +95,7 @@ class _Batch:
             self.advance(1, result.attempts)
 
     def line(self, k: int, lines: SceneLines) -> bytes | None:
-        """The line of one scene; ``None`` if it is not found."""
+        """Return the line of one scene; ``None`` if it is not found."""
         job = replace(self.job(), first=k, last=k + 1)
         (result,) = results_of(self.scenario, job)
         return None if isinstance(result, Exhausted) else lines.encoded(result)

@@ -24,7 +24,7 @@ __all__ = ["simulate_into_sinks"]
 
 
 def _page(request: SimulateRequest, settings: Sequence[SettingRuns]) -> bytes | None:
-    """The page that plays all simulations, if there are any."""
+    """Return the page that plays all simulations, if there are any."""
     pages = [row.page for setting in settings for row in setting.simulations if row.page is not None]
     return course_page(request.path.name, pages).encode() if pages else None
 
@@ -81,7 +81,7 @@ def _require_libraries(form: str) -> None:
 
 
 def _batches(request: SimulateRequest, seed: int) -> list[tuple[SettingRuns, Simulations]]:
-    """The source: for each setting of the parameters what makes its simulations."""
+    """Return for each setting of the parameters the source of its simulations."""
     running = SimulationSettings(
         seed, request.max_steps, request.timestep, request.tries, request.step_limit,
         sobol=request.sobol, keep_violations=request.keep != "none",

@@ -102,7 +102,7 @@ def _parts(actions: Reader, tokens: Tokens, parts: Iterable[Any], *, raw: bool) 
 
 
 def _merged(nodes: Iterable[ast.expr]) -> list[ast.expr]:
-    """Neighbouring constants as one, and none that is empty."""
+    """Join neighbouring constants, and drop empty ones."""
     result: list[ast.expr] = []
     for node in nodes:
         if isinstance(node, ast.Constant):

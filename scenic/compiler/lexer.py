@@ -47,7 +47,7 @@ def lex(text: str, words: Mapping[str, int]) -> Tokens:
 def prepared(
     text: str, words: Mapping[str, int], lexer: "Callable[[str, Mapping[str, int]], Lexer]"
 ) -> Tokens:
-    """The text as ``lexer`` reads it: without its byte order mark, with the line ends that it wants."""
+    """Return the tokens that ``lexer`` reads from a text without its byte order mark, with uniform line ends."""
     text = text.lstrip("\ufeff")
     if "\r" in text:
         text = text.replace("\r\n", "\n").replace("\r", "\n")
@@ -276,7 +276,7 @@ class Lexer(LineReader):
         tokens.end_columns += (column, column + (pos < len(self.text)))
 
     def odd_closer(self, start: int) -> int:
-        """A closing bracket that ends a replacement field, or does not fit."""
+        """Read a closing bracket that ends a replacement field, or does not fit."""
         closer = self.text[start]
         opener = lexical_errors.OPENER_OF[closer]
         brackets, span = self.brackets, self.here(start, start + 1)
@@ -317,7 +317,7 @@ class Lexer(LineReader):
     # f-strings.
 
     def in_field(self, start: int) -> int:
-        """``:`` or ``!`` directly inside a replacement field."""
+        """Read ``:`` or ``!`` directly inside a replacement field."""
         mark = self.text[start]
         self.add(self.words.get(mark, ERROR), start, start + 1)
         if mark == "!":
@@ -433,7 +433,7 @@ class Lexer(LineReader):
             self.add(ERROR, start, end)
 
     def open_string(self, start: int, end: int) -> int:
-        """A string that is not closed; ``end`` is after the quote that opens it."""
+        """Read a string that is not closed; ``end`` is after the quote that opens it."""
         text = self.text
         quote = text[start:end].lstrip("bBrRuU")
         if self.fields and self.fields[-1].string.quote == quote and end - start == len(quote):
@@ -468,7 +468,7 @@ class Lexer(LineReader):
         self.add(ERROR, start, end)
 
     def stray(self, start: int) -> int:
-        """A character that starts no token."""
+        """Read a character that starts no token."""
         text = self.text
         if text[start] != "\\":
             match = lexemes.STRAY_RUN.match(text, start)

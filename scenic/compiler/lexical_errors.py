@@ -150,7 +150,7 @@ _WORDS_AFTER: Final = {
 
 
 def _with_unit(whole: str, message: str, span: Span) -> Diagnostic | None:
-    """``90°``, ``5s``, ``3m``: a number with a unit."""
+    """Explain a number with a unit: ``90°``, ``5s``, ``3m``."""
     match = _NUMBER.fullmatch(whole)
     if match is None:
         return None

@@ -192,7 +192,7 @@ class _Parsers:
 
     @contextmanager
     def reading(self, lists: TokenLists, actions: Actions) -> Iterator[Run]:
-        """A parser of these tokens, which nobody else uses meanwhile; each thread and each nested parse has its own."""
+        """Provide a parser of these tokens that nobody else uses meanwhile; each thread and each nested parse has its own."""
         try:
             run = self._idle.pop()
         except IndexError:

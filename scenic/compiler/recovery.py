@@ -288,7 +288,7 @@ class Recovery:
         return self._error(start, end, body), end
 
     def _forget_guards(self) -> None:
-        """Guards of a scenario whose parts are spoilt stand where they should."""
+        """Drop the reports of guards of a scenario whose parts are spoilt: the guards stand where they should."""
         problems = self.actions.problems
         self._spoilt.sort()
         for key, problem in list(problems.items()):

@@ -153,7 +153,7 @@ def _places(kinds: list[int], kind: int) -> Iterator[int]:
 
 
 def in_parentheses(tokens: Tokens, operands: Iterable[OperandSpan]) -> Tokens:
-    """``tokens`` with parentheses of no width around ``operands``."""
+    """Return ``tokens`` with parentheses of no width around ``operands``."""
     openings: dict[int, int] = {}
     closings: dict[int, int] = {}
     for operand in operands:

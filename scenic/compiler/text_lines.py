@@ -97,7 +97,7 @@ class LineReader:
             self.tokens.diagnostics.append(diagnostic)
 
     def here(self, start: int, end: int) -> Span:
-        """The span of ``text[start:end]``, which lies on the present line."""
+        """Return the span of ``text[start:end]``, which lies on the present line."""
         return Span(self.line, start - self.line_start, self.line, end - self.line_start)
 
     # Lines and indentation.
@@ -161,7 +161,7 @@ class LineReader:
         self.add_empty(DEDENT, end)
 
     def continued_indentation(self, start: int) -> int:
-        """A line that starts with a backslash: the blanks before the first one are its indentation."""
+        """Read the indentation of a line that starts with a backslash: the blanks before the first backslash."""
         text = self.text
         column = strict_column = first = 0
         pos = start
@@ -203,7 +203,7 @@ class LineReader:
 
 
 def measure(white: str) -> tuple[int, int]:
-    """The width of an indentation with tabs to the next multiple of eight, and with tabs of one."""
+    """Return the width of an indentation with tabs to the next multiple of eight, and with tabs of one."""
     if not white.strip(" "):
         return len(white), len(white)
     column = strict_column = 0
@@ -213,7 +213,7 @@ def measure(white: str) -> tuple[int, int]:
 
 
 def _after(character: str, column: int, strict_column: int) -> tuple[int, int]:
-    """The two widths after one more blank."""
+    """Return the two widths after one more blank."""
     if character == "\f":  # starts the line again
         return 0, 0
     return (column + 1 if character == " " else (column // _TAB + 1) * _TAB), strict_column + 1

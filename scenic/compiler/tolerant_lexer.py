@@ -83,7 +83,7 @@ _WITH_OPERAND: Final = frozenset(
 
 @cache
 def _statement() -> re.Pattern[str]:
-    """The pattern of a line that is a statement if it is indented no more than the statement around it."""
+    """Return the pattern of a line that is a statement if it is indented no more than the statement around it."""
     return re.compile(
         # Words that start nothing but statements,
         rf"{_any_of(sorted(STATEMENT_WORDS | {'from'}))}(?=[ \t:(\n\[])"
@@ -98,7 +98,7 @@ def _statement() -> re.Pattern[str]:
 
 @cache
 def _after_text() -> re.Pattern[str]:
-    """The pattern of a line of a text that is never closed which is hardly prose."""
+    """Return the pattern of a line that is hardly prose, in a text that is never closed."""
     return re.compile(
         r"(?:def|class|behavior|monitor|scenario)[ \t]++\w++[ \t]*+[(:]"
         r"|from[ \t]++[\w.]++[ \t]++import\b|(?:import|model)[ \t]++[\w.]++(?:[ \t]++as[ \t]++\w++)?+[ \t]*+(?=[#\n,;])"
@@ -117,7 +117,7 @@ def _call() -> re.Pattern[str]:
 
 
 def _specifier_start(form: Form) -> str:
-    """The words that a specifier begins with, and the property of `with`: a regular expression."""
+    """Return a regular expression for the words that a specifier begins with, and the property of `with`."""
     words: list[str] = []
     for part in form.parts:
         if isinstance(part, Slot):
@@ -128,7 +128,7 @@ def _specifier_start(form: Form) -> str:
 
 @cache
 def _specifier() -> re.Pattern[str]:
-    """The pattern of a line that holds a specifier."""
+    """Return the pattern of a line that contains a specifier."""
     return re.compile(rf"{_any_of(map(_specifier_start, SPECIFIERS))}[ \t]++(?![=:,.])[^\n]*+(?<![:\n])\n")
 
 
@@ -271,7 +271,7 @@ class _TolerantLexer(Lexer):
         )
 
     def statement_start(self) -> int:
-        """The first token of the logical line that the tokens end with."""
+        """Return the first token of the logical line that the tokens end with."""
         kinds = self.tokens.kinds
         first = len(kinds) - 1
         least = max(0, first - _MOST_TOKENS_SEARCHED)
@@ -349,7 +349,7 @@ class _TolerantLexer(Lexer):
                 return
 
     def column_of(self, bracket: Bracket) -> int:
-        """The indentation of the line that a bracket is on."""
+        """Return the indentation of the line that a bracket is on."""
         return self.columns.get(bracket.line, self.indents[-1][0])
 
     def odd_closer(self, start: int) -> int:
@@ -379,11 +379,11 @@ class _TolerantLexer(Lexer):
         return start + 1
 
     def wanted_closers(self) -> str:
-        """The characters that close the open brackets, innermost first."""
+        """Return the characters that close the open brackets, innermost first."""
         return "".join(bracket.closer for bracket in self.brackets[: -_MOST_BRACKETS_COMPARED - 1 : -1])
 
     def closers(self, pos: int, *, in_text: bool = False) -> str:
-        """The closing brackets in the rest of a line, as far as they are not opened there."""
+        """Return the closing brackets in the rest of a line, as far as they are not opened there."""
         text = self.text
         farthest = min(len(text), pos + _MOST_CHARACTERS_SEARCHED)
         end = text.find("\n", pos, farthest)

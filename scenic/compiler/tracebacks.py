@@ -251,7 +251,7 @@ def _is_users(filename: str) -> bool:
 
 @cache
 def _library_folders() -> tuple[str, ...]:
-    """Folders whose Python code is not the user's."""
+    """Return the folders whose Python code is not the user's."""
     paths = sysconfig.get_paths()
     names = ("stdlib", "platstdlib", "purelib", "platlib")
     package = str(Path(__file__).resolve().parent.parent)

@@ -212,7 +212,7 @@ class _Gbnf(_Writer):
         return self.rule(f"t_{name.lower()}")
 
     def names(self) -> Iterator[str]:
-        """Trees of the beginnings of the words that are no names: a name leaves its tree somewhere."""
+        """Yield trees of the beginnings of the words that are not names: a name leaves its tree somewhere."""
         rule = self.rule
         yield f"{rule('name_part')} ::= [A-Za-z0-9_{letters(first=False)}]"
         yield f"{rule('letter_beyond')} ::= [{letters(first=True)}]"

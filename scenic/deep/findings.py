@@ -52,9 +52,9 @@ def deep_check(path: str | Path, *, mode2D: bool = False) -> tuple[Diagnostic, .
     if all(item.severity is not Severity.ERROR for item in findings):
         names = {address: name.thing for address, name in scenario.draw_names.items()}
         boxes = contract(graph, facts).domain
-        combined = Domain.whole(graph.dimension).with_finite(narrowed_values(decision))
+        narrowed_domain = Domain.whole(graph.dimension).with_finite(narrowed_values(decision))
         findings += tuple(
-            _placed(item, scenario.text) for item in prove_dead(graph, (boxes, combined), names)
+            _placed(item, scenario.text) for item in prove_dead(graph, (boxes, narrowed_domain), names)
         )
         findings += prove_branches(scenario.text, filename, scenario.program, graph.nodes, facts)
     if not has_solver():

@@ -121,7 +121,7 @@ def split(
 
 
 def _distance(row: _Row, threshold: float) -> float:
-    """By how much a run is off a failure."""
+    """Return by how much a run misses a failure."""
     if "distances" in row:
         return min(map(float, row["distances"]))
     return min(map(float, row["values"])) - threshold

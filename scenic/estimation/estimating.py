@@ -265,7 +265,7 @@ class _Course:
         return _answer(self._asked, self._total)[0]
 
     def _all_rows(self, kept: list[dict[str, Any]]) -> Generator[dict[str, Any]]:
-        """The rows of the folder, and new ones from there on."""
+        """Yield the rows of the folder, and new ones from there on."""
         first = self._runs.first
         if self._runs.budget is None:
             yield from kept

@@ -94,7 +94,7 @@ def notes(estimate: Estimate) -> list[str]:
 
 
 def _about_rare(rare: Rare, estimate: Estimate) -> list[str]:
-    """Remarks on a splitting."""
+    """Return remarks on a splitting."""
     if rare.is_flat:
         return [
             (
@@ -151,7 +151,7 @@ def _rounded(number: float) -> int:
 
 
 def _about_weights(estimate: Estimate) -> list[str]:
-    """Remarks on importance sampling."""
+    """Return remarks on importance sampling."""
     weights = estimate.weighted
     if weights is None:
         return []
@@ -272,7 +272,7 @@ def _about_requirements(estimate: Estimate) -> list[str]:
 
 
 def _about_verdicts(tally: Tally, known: int) -> list[str]:
-    """Remarks on what simulations that end leave open."""
+    """Return remarks on what simulations that end leave open."""
     open_ = tally.presumable + tally.unmet
     longer = "Longer simulations (--time) may tell."
     if open_ == known - tally.unseen and tally.unmet == 0 and open_:

@@ -273,7 +273,7 @@ class _Descended:
         return min(max(_NORMAL.cdf(normal), FIRST), LAST)
 
     def word(self, place: int) -> int:
-        """64 bits at an address."""
+        """Return 64 random bits at an address."""
         current = self._first.word(place)
         for source, _, _, chances, chance in self._moves:
             if source.word(place ^ _OTHER) % _CHANCES < chances * chance:

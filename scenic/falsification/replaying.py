@@ -275,8 +275,8 @@ def _search_again(
     numbers = {int(address, 16): value for address, value in row.get("numbers", {}).items()}
     is_guided = settings.get("guide") is not None
     # All draws were searched, also those on which nothing depends.
-    searched = {item.address for item in space.coordinates}
-    if not is_guided and not searched <= numbers.keys() <= searched | scenario.idle_draws:
+    axes_searched = {item.address for item in space.coordinates}
+    if not is_guided and not axes_searched <= numbers.keys() <= axes_searched | scenario.idle_draws:
         raise ReplayError(
             "the program draws other values than when it was searched",
             help="replay the run with the program as it was, or search again",

@@ -80,6 +80,6 @@ def _lines(stage: Stage, x: Singles, y: Singles, footprint: Singles) -> Singles:
 
 
 def _grid_spacing(reach: float) -> float:
-    """One, two or five times a power of ten metres, so that a scene has some twenty lines."""
+    """Return one, two or five times a power of ten metres, so that a scene has some twenty lines."""
     power = 10.0 ** np.floor(np.log10(reach / 12))
     return float(min((1, 2, 5, 10), key=lambda step: abs(np.log(step * power * 12 / reach))) * power)

@@ -177,7 +177,7 @@ def page(scenes: Iterable[Scene], title: str) -> str:
 
 
 def _mesh(surface: MeshSurface) -> dict[str, str]:
-    """Corners as 32-bit floats; normals as four 16-bit integers, the last for alignment; 32-bit indices.
+    """Encode corners as 32-bit floats, normals as four 16-bit integers (the last for alignment), and 32-bit indices.
 
     Colours of corners, where some have their own, are four bytes of linear light, the last 0 for those that have none.
     """
@@ -229,7 +229,7 @@ def _points(line: Array) -> list[list[float]]:
 
 
 def _view(instance: MeshInstance) -> list[list[list[float]]] | None:
-    """Lines that show the view of an object: of the ego, and of objects with ``showVisibleRegion``."""
+    """Return lines that show the view of an object: of the ego, and of objects with ``showVisibleRegion``."""
     thing = instance.thing
     if not (instance.is_ego or thing.properties.get("showVisibleRegion", False)):
         return None

@@ -132,7 +132,7 @@ class _Image:
         return levels
 
     def at(self, coordinates: Singles, blur: Singles) -> Singles:
-        """Linear colours, weighed by opacity, and opacity ``(n, 4)`` at coordinates ``(n, 2)``."""
+        """Return linear colours, weighed by opacity, and opacity ``(n, 4)`` at coordinates ``(n, 2)``."""
         height, width = self._pixels.shape[:2]
         covered = np.maximum(blur * np.float32(max(width, height)), np.float32(1e-6))
         level = np.clip(np.rint(np.log2(covered)), 0, len(self._levels) - 1).astype(np.intp)
@@ -149,7 +149,7 @@ def _packed(light: Singles) -> npt.NDArray[np.uint8]:
 
 
 def _between(pixels: npt.NDArray[np.uint8], coordinates: Singles) -> Singles:
-    """Linear colours and opacity between pixels, by the four nearest; ``(n, 4)``."""
+    """Interpolate linear colours and opacity between pixels, by the four nearest; ``(n, 4)``."""
     height, width = pixels.shape[:2]
     # Coordinates go up, rows go down. Whole numbers apart, they mean the same place.
     part = coordinates.astype(np.float64) % 1

@@ -54,7 +54,7 @@ def coordinates_of(
 
 
 def _matched(wanted: _Array, places: _Array, coordinates: _Array) -> _Array:
-    """Coordinates of triangles ``(f, 3, 3)`` that are triangles of a file, or parts of them."""
+    """Return the coordinates of triangles ``(f, 3, 3)`` that are triangles of a file, or parts of them."""
     from scipy.spatial import KDTree
 
     tree = KDTree(places.mean(axis=1))

@@ -412,7 +412,7 @@ def surface_of(mesh: UnitMesh | Appearance, size: Triple) -> MeshSurface:
 
 
 def _face_normals(vertices: Array, faces: npt.NDArray[np.int64]) -> tuple[Array, Array]:
-    """Unit normals and areas of the faces."""
+    """Return unit normals and areas of the faces."""
     a, b, c = (vertices[faces[:, corner]] for corner in range(3))
     normal = np.cross(b - a, c - a)
     length = np.linalg.norm(normal, axis=1)

@@ -172,7 +172,7 @@ def _rings(polygons: Any, z: float) -> list[Array]:
 
 
 def _chained(segments: Array) -> list[Array]:
-    """Segments ``(n, 2, 3)`` as lines, joined where one begins at the end of the one before."""
+    """Join segments ``(n, 2, 3)`` to lines where one begins at the end of the one before."""
     breaks = np.flatnonzero((segments[1:, 0] != segments[:-1, 1]).any(axis=1)) + 1
     return [np.concatenate([part[:, 0], part[-1:, 1]]) for part in np.split(segments, breaks) if len(part)]
 
@@ -198,7 +198,7 @@ def _cloud(region: Region, columns: Sequence[Array]) -> list[Array]:
 
 
 def _mesh_lines(mesh: Mesh, side: tuple[int, int] | None, threshold: float) -> list[Array]:
-    """Edges of a mesh, or of its faces that look to a side; and sections of what is round."""
+    """Return the edges of a mesh, or of its faces that look to a side, and sections of round parts."""
     vertices, faces = np.asarray(mesh.vertices), np.asarray(mesh.faces)
     corners = vertices[faces]
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -224,7 +224,7 @@ def _mesh_lines(mesh: Mesh, side: tuple[int, int] | None, threshold: float) -> l
 
 
 def _longest(lines: list[Array]) -> list[Array]:
-    """As many of the lines ``(2, 3)`` as a page takes, the longest ones, in their order."""
+    """Return as many of the lines ``(2, 3)`` as a page takes, the longest ones, in their order."""
     if len(lines) <= _MOST_EDGES:
         return lines
     length = np.array([np.linalg.norm(line[1] - line[0]) for line in lines])

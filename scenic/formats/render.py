@@ -142,7 +142,7 @@ class _Drawing:
     # Colours
 
     def _color(self, seen: Seen, light: Light, eye: Singles | None = None, layers: int = _LAYERS) -> Singles:
-        """Linear colours ``(3, n)`` of what rays from the lens see, or of what is behind it seen from farther eyes."""
+        """Return the linear colours ``(3, n)`` that rays from the lens see; rays that see nothing get what is behind, seen from farther eyes."""
         stage = self._stage
         result = np.zeros((3, len(seen.group)), np.float32)
         thing = np.flatnonzero(seen.group > 0)
@@ -188,7 +188,7 @@ class _Drawing:
         return result
 
     def _curved_color(self, seen: Seen, light: Light) -> Singles:
-        """Linear colours ``(n, 3)`` on triangles whose corners have different normals."""
+        """Return linear colours ``(n, 3)`` on triangles whose corners have different normals."""
         total = np.zeros((len(seen.triangle), 3), np.float32)
         for corner, weight in enumerate((1 - seen.second - seen.third, seen.second, seen.third)):
             sunny, shady = self._stage.sunny[seen.triangle, corner], self._stage.shady[seen.triangle, corner]
@@ -196,20 +196,20 @@ class _Drawing:
         return total
 
     def _behind(self, front: Seen, eye: Singles, layers: int) -> Singles:
-        """Colours ``(3, n)`` beyond transparent things, whose inside is not seen."""
+        """Return colours ``(3, n)`` beyond transparent things, whose inside is not seen."""
         stage = self._stage
         margin = np.float32(stage.reach * 1e-4)
         start = eye + front.directions * (np.float32(1) / front.nearness + margin)[:, None]
-        seen = look(stage, start, front.directions)
+        sight = look(stage, start, front.directions)
         thing = stage.owner[front.triangle]
         for _ in range(_INSIDE):
-            within = np.flatnonzero((seen.group > 0) & (stage.owner[seen.triangle] == thing))
+            within = np.flatnonzero((sight.group > 0) & (stage.owner[sight.triangle] == thing))
             if not len(within):
                 break
-            start[within] += seen.directions[within] * (1 / seen.nearness[within] + margin)[:, None]
-            seen.replace(within, look(stage, start[within], seen.directions[within]))
-        light = own_light(stage, start, seen, np.arange(len(start)) % 16)
-        return self._color(seen, light, start, layers - 1)
+            start[within] += sight.directions[within] * (1 / sight.nearness[within] + margin)[:, None]
+            sight.replace(within, look(stage, start[within], sight.directions[within]))
+        light = own_light(stage, start, sight, np.arange(len(start)) % 16)
+        return self._color(sight, light, start, layers - 1)
 
     # Edges
 
@@ -295,7 +295,7 @@ def _fill(
 
 
 def _between(beside: Mask, below: Mask, shape: tuple[int, int]) -> Mask:
-    """Pixels between those of a coarse image that neighbours do not decide, ``shape``; also those without neighbours."""
+    """Return the mask, of shape ``shape``, of the pixels between those of a coarse image that neighbours do not decide; also of those without neighbours."""
     height, width = shape
     rows, columns = below.shape[0] + 1, beside.shape[1] + 1
     across, along = np.ones((rows, columns), np.bool_), np.ones((rows, columns), np.bool_)

@@ -90,7 +90,7 @@ def _wheels(
 def _hull(
     model: Modeller, stations: tuple[tuple[float, float, float, float], ...], paint: Triple | None = None
 ) -> None:
-    """A body through octagons at (y, half width, bottom, top), from back to front."""
+    """Add a body through octagons at (y, half width, bottom, top), from back to front."""
     rings = []
     for y, half, low, high in stations:
         bevel = min(0.12, 0.25 * (high - low))
@@ -130,7 +130,7 @@ def _car(model: Modeller) -> None:
 
 
 def _greenhouse(model: Modeller) -> None:
-    """The cabin of a car: roof, pillars and windows."""
+    """Add the cabin of a car: roof, pillars and windows."""
     low = [(-0.86, -1.95, 0.93), (0.86, -1.95, 0.93), (0.86, 1.05, 0.93), (-0.86, 1.05, 0.93)]
     high = [(-0.66, -1.3, 1.47), (0.66, -1.3, 1.47), (0.66, 0.2, 1.47), (-0.66, 0.2, 1.47)]
     roof = [(0.86 * x, 0.86 * (y + 0.55) - 0.55, 1.5) for x, y, _ in high]
@@ -254,7 +254,7 @@ def _rider(
     *,
     helmet: bool = False,
 ) -> None:
-    """A person who sits with the hands on a bar; ``knee`` is a height, ``foot`` a place along Y and a height."""
+    """Add a person who sits with the hands on a bar; ``knee`` is a height, ``foot`` a place along Y and a height."""
     model.tube(hip, shoulder, 0.14, end_radius=0.17)
     head = (0, shoulder[1] + 0.1, shoulder[2] + 0.2)
     model.ball(head, (0.13, 0.15, 0.14) if helmet else (0.1, 0.115, 0.13), _DARK if helmet else _SKIN)

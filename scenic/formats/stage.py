@@ -169,9 +169,9 @@ class Stage:
             if number in self._coordinates:
                 second, third = (weight[mine] for weight in corners)
                 file_coordinates = self._coordinates[number]
-                interpolated = file_coordinates.at(triangles - file_coordinates.first, second, third)
-                has = ~np.isnan(interpolated[:, 0])
-                coordinates[has] = interpolated[has]
+                file_values = file_coordinates.at(triangles - file_coordinates.first, second, third)
+                has = ~np.isnan(file_values[:, 0])
+                coordinates[has] = file_values[has]
                 blur[has] = (
                     pixel[mine][has] * file_coordinates.density[triangles[has] - file_coordinates.first]
                 )
@@ -221,13 +221,13 @@ class _Coordinates:
     density: Singles
 
     def at(self, triangle: npt.NDArray[np.int32], second: Singles, third: Singles) -> Singles:
-        """Coordinates ``(n, 2)`` in triangles, by weights of their corners; not a number where there are none."""
+        """Interpolate coordinates ``(n, 2)`` in triangles by weights of their corners; not a number where a triangle has none."""
         a, b, c = (self.values[triangle, corner] for corner in range(3))
         return np.asarray(a + second[:, None] * (b - a) + third[:, None] * (c - a), np.float32)
 
 
 def _density(values: Singles, triangles: Singles) -> Singles:
-    """Texture coordinates for each metre on triangles ``(t, 3, 3)`` with coordinates ``(t, 3, 2)``; ``(t,)``."""
+    """Return texture coordinates for each metre on triangles ``(t, 3, 3)`` with coordinates ``(t, 3, 2)``; ``(t,)``."""
     u, v = values[:, 1] - values[:, 0], values[:, 2] - values[:, 0]
     area = np.linalg.norm(
         np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]), axis=1
@@ -286,7 +286,7 @@ def _colors(scenery: Scenery) -> tuple[Array, Array, Array]:
 
 
 def _light_on(scenery: Scenery, normals: Singles, albedo: Singles) -> tuple[Singles, Singles]:
-    """Colours that sun and sky give the corners of triangles ``(t, 3, 3)`` of colours ``(t, 3)``."""
+    """Return the colours that sun and sky give the corners of triangles ``(t, 3, 3)`` of colours ``(t, 3)``."""
     facing = np.maximum(normals @ scenery.sun.astype(np.float32), 0)
     upward = normals[..., 2] * np.float32(0.5) + np.float32(0.5)
     sun, sky, bounce = (color.astype(np.float32) for color in _colors(scenery))

@@ -634,7 +634,7 @@ def _imported(project: Project, module: Module, before: tuple[str, ...]) -> Iter
 def _arguments(
     project: Project, snapshot: Snapshot, before: tuple[str, ...], line: int, column: int
 ) -> Iterator[Completion]:
-    """Parameters that can be given by name in the call around a place."""
+    """Yield the parameters that can be given by name in the call around a place."""
     depth = 0
     for index in range(len(before) - 1, -1, -1):
         if before[index] in ")]}":

@@ -419,7 +419,7 @@ class _Layout:
         self._lines += [""] * min(blank, most)
 
     def _moved(self, line: _Line, depth: int) -> None:
-        """A line as it stands, moved to its indentation; what is inside strings stays where it is."""
+        """Move a line as it stands to its indentation; the inside of strings stays where it is."""
         first = self._old[line.first - 1]
         shift = len(_INDENTATION) * depth - _width(first)
         for number in range(line.first, line.last + 1):

@@ -156,7 +156,7 @@ def _parameters(snapshot: Snapshot, model: Model, node: ast.Call) -> Iterator[Hi
 
 
 def _priorities(snapshot: Snapshot, node: scenic.New) -> Iterator[Hint]:
-    """Specifiers of which one property is left to another specifier with a higher priority."""
+    """Yield hints at specifiers of which one property is left to another specifier with a higher priority."""
     strongest: dict[str, tuple[int, str]] = {}
     for specifier in node.specifiers:
         declaration = SPECIFIERS.get(specifier.specifier)
@@ -181,7 +181,7 @@ def _priorities(snapshot: Snapshot, node: scenic.New) -> Iterator[Hint]:
 
 
 def _ranges(snapshot: Snapshot, remarks: Remarks | None) -> Iterator[Hint]:
-    """Ranges that narrowing leaves of random values."""
+    """Yield the ranges that narrowing leaves of random values."""
     for each in () if remarks is None else ranges(snapshot, remarks):
         tooltip = f"the requirements leave {each.left} of {each.before}: nothing else is drawn"
         yield Hint(each.span.end_line, each.span.end_column, f" → {each.left}", HintKind.RANGE, tooltip)

@@ -186,7 +186,7 @@ _DEFINITIONS: Final[Mapping[type[ast.AST], str]] = MappingProxyType(
 
 
 def _names(snapshot: Snapshot, imported: Callable[[str], str | None]) -> dict[tuple[int, int], _What]:
-    """By line and column in bytes: what the names and strings there are that are more than their spelling says."""
+    """Return by line and column in bytes the meanings of names and strings that are more than their spelling says."""
     resolution = snapshot.resolution
     meaning_at: dict[tuple[int, int], _What] = {}
     none: frozenset[str] = frozenset()

@@ -148,7 +148,7 @@ def _of_statement(
 
 
 def _inner(snapshot: Snapshot, body: Sequence[ast.stmt], depth: int) -> tuple[OutlineSymbol, ...]:
-    """Definitions in a function; its variables are its own business."""
+    """Return the definitions in a function, without its variables."""
     kinds = (OutlineKind.VARIABLE, OutlineKind.CONSTANT, OutlineKind.OBJECT)
     return tuple(each for each in _of_block(snapshot, body, depth) if each.kind not in kinds)
 

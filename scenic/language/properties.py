@@ -127,10 +127,10 @@ def _P(
     shown: str = "",
     **rest: Any,
 ) -> BuiltinProperty:
-    """A property; a default that is not words is a constant, which the manual shows as ``shown``."""
-    given = default if isinstance(default, str) else ConstantDefault(default, shown)
+    """Return a property; a default that is not words is a constant, which the manual shows as ``shown``."""
+    default_value = default if isinstance(default, str) else ConstantDefault(default, shown)
     types = types if isinstance(types, tuple) else (types,)
-    return BuiltinProperty(name, types, given, documentation, needs, **rest)
+    return BuiltinProperty(name, types, default_value, documentation, needs, **rest)
 
 
 def _method(name: str, result: str, documentation: str) -> Attribute:

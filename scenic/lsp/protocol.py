@@ -193,7 +193,7 @@ class Protocol(LanguageServerProtocol):
             self._handle_response(name, None, types.ResponseError(0, str(wrong)))
 
     def _typed(self, method: str, params: object) -> Any:
-        """Parameters as the protocol's types have them."""
+        """Convert parameters to the protocol's types."""
         kind: Any = types.METHOD_TO_TYPES.get(method, (None, None, None))[2]
         if kind is None:
             return params

@@ -71,7 +71,7 @@ class Server(LanguageServer):
         return lambda params: handler(method)(self.session, params)
 
     def _abandoned(self) -> None:
-        """The process that started us has gone without a word."""
+        """End this process: the process that started it has gone without a word."""
         os._exit(int(self.protocol.stage is not Stage.SHUT_DOWN))
 
     def report_server_error(self, error: Exception, source: Any) -> None:

@@ -160,7 +160,7 @@ def _refuse(_result: str) -> None:
 
 
 def _plain(quote: str) -> Callable[[str], str | None]:
-    """Writing of a string without escapes."""
+    """Return a function that writes a string without escapes."""
 
     def written(result: str) -> str | None:
         return None if quote in result or (len(quote) == 1 and "\n" in result) else result
@@ -173,7 +173,7 @@ _PIECE: Final = re.compile(r"\\(?:\r\n|[0-7]{1,3}|x..|u.{4}|U.{8}|N\{[^}]*\}|.)|
 
 
 def _escaped(body: str, quote: str) -> Callable[[str], str | None]:
-    """Writing of a string with escapes: lines that do not change keep the way in which they are written."""
+    """Return a function that writes a string with escapes: lines that do not change keep the way in which they are written."""
 
     def written(result: str) -> str | None:
         pieces = [

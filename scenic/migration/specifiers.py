@@ -98,7 +98,7 @@ def _operand_is_whole(text: str, phrase: scenic.SpecifierPhrase, words: str) -> 
 
 
 def _deviation(piece: TextPiece, owner: ast.AST, value: ast.expr | None) -> None:
-    """``positionStdDev: s`` is ``(s, s, 0)``."""
+    """Rewrite ``positionStdDev: s`` as ``(s, s, 0)``."""
     match value:
         case None | ast.Tuple() | ast.List() | scenic.Operation() | scenic.New():
             return

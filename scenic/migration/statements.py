@@ -61,7 +61,7 @@ def _block_of(piece: TextPiece, node: ast.AST) -> list[ast.stmt]:
 
 
 def _terminations(piece: TextPiece) -> None:
-    """``terminate`` of behaviors and monitors, in a program with modular scenarios."""
+    """Rewrite ``terminate`` of behaviors and monitors, in a program with modular scenarios."""
     if not any(piece.of(scenic.ScenarioDef)):
         return
     for node in piece.of(scenic.Terminate):
@@ -142,7 +142,7 @@ def _temporal(piece: TextPiece) -> None:
 
 
 def _modules(piece: TextPiece, finder: ModuleFinder) -> None:
-    """Modules that have moved, or are Python today."""
+    """Rewrite imports of modules that have moved, or are Python today."""
     for node in piece.of(scenic.Model, ast.ImportFrom, ast.Import):
         match node:
             case scenic.Model(name=name):

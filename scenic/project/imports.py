@@ -110,23 +110,23 @@ class Imports:
             yield from self._module_findings(self.found(model), model, model.name, 0)
         for plain in self._plain:
             for alias in plain.names:
-                found = self._project.find(alias.name, importer=self._source.filename)
-                yield from self._module_findings(found, alias, alias.name, 0)
+                target = self._project.find(alias.name, importer=self._source.filename)
+                yield from self._module_findings(target, alias, alias.name, 0)
         for statement in self._froms:
-            found = self.found(statement)
-            before = list(self._module_findings(found, statement, statement.module or "", statement.level))
+            target = self.found(statement)
+            before = list(self._module_findings(target, statement, statement.module or "", statement.level))
             yield from before
-            if not found.is_missing:
-                yield from self._name_findings(found, statement)
+            if not target.is_missing:
+                yield from self._name_findings(target, statement)
         yield from self._attribute_findings()
 
     def _module_findings(self, found: FoundModule, node: Any, name: str, level: int) -> Iterator[Diagnostic]:
         star = isinstance(node, scenic.Model) or node in self._names.module.stars
         if not found.is_missing:
             exports = self._project.exports_of(found) if star and self._verbose else None
-            for unseen in () if exports is None else exports.unseen:
-                inner = unseen.module not in (name, name.rpartition(".")[2] + ".scenic")
-                why = f"of `{unseen.module}`, {unseen.reason}" if inner else unseen.reason
+            for missing_part in () if exports is None else exports.unseen:
+                inner = missing_part.module not in (name, name.rpartition(".")[2] + ".scenic")
+                why = f"of `{missing_part.module}`, {missing_part.reason}" if inner else missing_part.reason
                 yield self._unknown(node, name, why)
             return
         severity, near = _judgement(found, node, level)
@@ -167,9 +167,10 @@ class Imports:
         )
 
     def _searched(self, found: FoundModule, node: object, level: int) -> str:
-        own = os.path.dirname(os.path.abspath(self._source.filename))
+        own_folder = os.path.dirname(os.path.abspath(self._source.filename))
         folders = [
-            "beside the program" if each == own else f"in `{_shown(each, own)}`" for each in found.searched
+            "beside the program" if each == own_folder else f"in `{_shown(each, own_folder)}`"
+            for each in found.searched
         ]
         if len(folders) > _MOST_FOLDERS:
             folders = [*folders[:_MOST_FOLDERS], f"in {len(folders) - _MOST_FOLDERS} other folders"]
@@ -206,18 +207,20 @@ class Imports:
             yield self._without(module, alias.name, exports, place, alias)
 
     def _attribute_findings(self) -> Iterator[Diagnostic]:
-        imported = {
+        module_names = {
             binding.name
             for binding in self._resolution.names.values()
             if binding.kinds <= {BindingKind.MODULE, BindingKind.IMPORTED}
         }
-        if not imported or self._resolution.reflective:
+        if not module_names or self._resolution.reflective:
             return
         for node, _ in self._resolution.nodes(ast.Attribute):
             base = node.value
             while isinstance(base, ast.Attribute):
                 base = base.value
-            if not (isinstance(base, ast.Name) and base.id in imported and isinstance(node.ctx, ast.Load)):
+            if not (
+                isinstance(base, ast.Name) and base.id in module_names and isinstance(node.ctx, ast.Load)
+            ):
                 continue
             home = self._names.module_behind(node.value)
             if home is None or home.is_missing or home.kind is ModuleKind.NAMESPACE:

@@ -96,14 +96,14 @@ class Project:
         """
         filename = os.path.abspath(filename)
         source = Source(text, filename)
-        known = self._opened.get(filename)
-        if known is None and filename in self._entries:
-            known = self._entries[filename].module
-        if known is None or known.source.text != source.text:
-            known = read_module(source, tree=tree, resolution=resolution)
+        module = self._opened.get(filename)
+        if module is None and filename in self._entries:
+            module = self._entries[filename].module
+        if module is None or module.source.text != source.text:
+            module = read_module(source, tree=tree, resolution=resolution)
             self._forget()
-        self._opened[filename] = known
-        return known
+        self._opened[filename] = module
+        return module
 
     def close(self, filename: str) -> None:
         """Take the text of a file from disk again."""
@@ -351,7 +351,7 @@ class Project:
 
 
 def _imports(module: Module) -> Iterator[tuple[int, str]]:
-    """Each module that a module may import: the dots before its name, and the name."""
+    """Yield each module that a module may import: the dots before its name, and the name."""
     nodes = module.resolution.nodes
     for node, _ in nodes(ast.Import):
         for alias in node.names:

@@ -97,19 +97,19 @@ class BoundTest:
 @lru_cache(maxsize=64)
 def _lower_threshold(bound: float, good: float, confidence: float, power: float) -> float:
     """Return the evidence at which the answer is "more": the highest one tried at which both errors are as promised."""
-    upper, wanted = -math.log1p(-confidence), 1 - power
-    best = lower = math.log(wanted)
+    upper, error_rate = -math.log1p(-confidence), 1 - power
+    best = lower = math.log(error_rate)
     scale = max(1.0, _SMALL / bound)
     test = BoundTest(scale * bound, scale * good, confidence, power)
     if not lower < 0 < upper or 20 * test.expected_runs(test.good) > _STEPS:
         return best
     for _ in range(4):
         chance = _chance_of_more(test, test.good, lower, upper)
-        if chance <= wanted and 1 - _chance_of_more(test, test.bound, lower, upper) <= 1 - confidence:
+        if chance <= error_rate and 1 - _chance_of_more(test, test.bound, lower, upper) <= 1 - confidence:
             best = max(best, lower)
         # The chance is nearly proportional to the likelihood ratio of the threshold.
-        lower = min(lower + math.log(wanted / chance), lower / 2)
-    return best - (_RARE_MARGIN if scale > 1 and best > math.log(wanted) else 0)
+        lower = min(lower + math.log(error_rate / chance), lower / 2)
+    return best - (_RARE_MARGIN if scale > 1 and best > math.log(error_rate) else 0)
 
 
 def _chance_of_more(test: BoundTest, probability: float, lower: float, upper: float) -> float:
@@ -118,21 +118,21 @@ def _chance_of_more(test: BoundTest, probability: float, lower: float, upper: fl
     span = holding - failing
     chances, first, chance, left = np.ones(1), 0, 0.0, 1.0
     for runs in range(1, _STEPS + 1):
-        moved = np.empty(len(chances) + 1)
-        moved[0], moved[1:] = 0.0, chances
-        moved *= probability
-        moved[:-1] += (1 - probability) * chances
+        distribution = np.empty(len(chances) + 1)
+        distribution[0], distribution[1:] = 0.0, chances
+        distribution *= probability
+        distribution[:-1] += (1 - probability) * chances
         # With `first` violations or more, up to `last`, neither threshold is reached.
         last = math.ceil((runs * holding - lower) / span) - 1 - first
-        if last < len(moved) - 1:
-            over = float(moved[max(0, last + 1) :].sum())
+        if last < len(distribution) - 1:
+            over = float(distribution[max(0, last + 1) :].sum())
             chance, left = chance + over, left - over
-            moved = moved[: max(0, last + 1)]
+            distribution = distribution[: max(0, last + 1)]
         least = math.floor((runs * holding - upper) / span) + 1 - first
         if least > 0:
-            left -= float(moved[:least].sum())
-            moved, first = moved[least:], first + least
-        chances = moved
+            left -= float(distribution[:least].sum())
+            distribution, first = distribution[least:], first + least
+        chances = distribution
         if left < _REST or not len(chances):
             break
     return chance

@@ -218,8 +218,8 @@ class Splitting(Generic[_Point]):
         populations: list[list[_Member[_Point]]] = [[] for _ in repetitions]
         yield from self._first(repetitions, size, number, populations)
         while all(len(members) >= size for members in populations):
-            failed = [sum(member.value <= 0 for member in members) for members in populations]
-            if min(failed) > 0 and sum(failed) >= _KEPT * size * len(populations):
+            failure_counts = [sum(member.value <= 0 for member in members) for members in populations]
+            if min(failure_counts) > 0 and sum(failure_counts) >= _KEPT * size * len(populations):
                 if number:
                     yield from self._enlarge(repetitions, populations, size, number)
                 for repetition, members in zip(repetitions, populations, strict=True):
@@ -229,15 +229,18 @@ class Splitting(Generic[_Point]):
                     repetition.ancestors = len(set(failures))
                 return
             level = _next_level(populations, size)
-            kept = [[member for member in members if member.value <= level] for members in populations]
-            if sum(map(len, kept)) > _FLAT * size * len(kept) or len(repetitions[0].levels) == _MOST_LEVELS:
+            survivors = [[member for member in members if member.value <= level] for members in populations]
+            if (
+                sum(map(len, survivors)) > _FLAT * size * len(survivors)
+                or len(repetitions[0].levels) == _MOST_LEVELS
+            ):
                 # Equal values of different runs show nothing to follow, those of the same run only that moves do not leave it.
-                points = {member.point for members in kept for member in members}
-                is_stuck = len(points) < _DISTINCT * size * len(kept)
+                points = {member.point for members in survivors for member in members}
+                is_stuck = len(points) < _DISTINCT * size * len(survivors)
                 for repetition in repetitions:
                     repetition.is_stuck, repetition.is_flat = is_stuck, not is_stuck
                 return
-            for repetition, members in zip(repetitions, kept, strict=True):
+            for repetition, members in zip(repetitions, survivors, strict=True):
                 repetition.levels.append(level)
                 before = repetition.shares[-1] if repetition.shares else 0.0
                 repetition.shares.append(before + math.log(len(members) / size))
@@ -247,7 +250,7 @@ class Splitting(Generic[_Point]):
                 return
             populations = [
                 [members[place] for place in self._generator.permutation(len(members))[:size]]
-                for members in kept
+                for members in survivors
             ]
             self._kernel.begin(len(repetitions[0].levels))
             yield from self._descend(repetitions, populations, populations, size, number)
@@ -361,11 +364,11 @@ class _Ahead:
 
     def levels(self, level: float | None) -> float:
         """The number of levels below a level, the next in the course of levels, or of all of them."""
-        passed = 0.0
+        share_behind = 0.0
         if level is not None and level < self._levels[0]:
             falling = [-value for value in self._levels]
-            passed = float(np.interp(-level, falling, self._shares))
-        ahead = max(0.0, (self._shares[-1] - passed) / math.log(_KEPT))
+            share_behind = float(np.interp(-level, falling, self._shares))
+        ahead = max(0.0, (self._shares[-1] - share_behind) / math.log(_KEPT))
         if level is not None:
             if math.isfinite(self._before) and self._before > level:
                 by_values = level / (self._before - level)

@@ -267,7 +267,7 @@ def _rejections(missing: "Exhausted") -> dict[str, Any]:
 
 
 def _not_found(missing: "Exhausted") -> Diagnostic:
-    """SC500, at the requirement that rejects most."""
+    """Return SC500, at the requirement that rejects most."""
     rows = sorted(missing.report.rows, key=lambda row: (-row.rejected, -row.alone))
     head = missing.message().splitlines()[0]
     if not rows:
@@ -373,7 +373,7 @@ def _rejected(reason: str, rejections: tuple[tuple[str, int], ...]) -> Diagnosti
 
 
 def _too_large(error: MemoryError) -> Diagnostic:
-    """SC610, at the line of the program that takes the memory."""
+    """Return SC610, at the line of the program that takes the memory."""
     place = diagnose(error)
     return Diagnostic(
         "SC610",

@@ -173,7 +173,7 @@ def _answered(trial: Trial, output: IO[bytes]) -> dict[str, Any]:
 
 
 def _address_space() -> int:
-    """Bytes that this process has mapped: what a fork inherits is no memory of the programs it tries."""
+    """Return the bytes that this process has mapped: memory that a fork inherits does not count for the programs it tries."""
     try:
         with open("/proc/self/statm", encoding="ascii") as file:
             return int(file.read().split()[0]) * os.sysconf("SC_PAGE_SIZE")

@@ -125,16 +125,18 @@ def bounded(labels: Mapping[int, NDArray[np.intp]], weights: Mapping[int, Floats
     if width > MOST_BOUNDED_LABELS:
         return None
     members = tuple(labels)
-    placed = tuple(labels.values())
+    labels_in_order = tuple(labels.values())
     mine = tuple(weights[member] for member in members)
     if width < len(members):
-        return Differing(members, BoundedDistinct(placed, mine, width, np.zeros(0, np.intp)), 0.0)
+        return Differing(members, BoundedDistinct(labels_in_order, mine, width, np.zeros(0, np.intp)), 0.0)
     clash = np.array([values.argmax() for values in mine], dtype=np.intp)
-    shared = np.intersect1d(placed[0], placed[1])
-    if not len(shared):
+    common_labels = np.intersect1d(labels_in_order[0], labels_in_order[1])
+    if not len(common_labels):
         return None
     for place in (0, 1):
-        clash[place] = np.flatnonzero(placed[place] == shared[0])[0]
-    law = BoundedDistinct(placed, mine, width, clash)
-    largest = [np.bincount(here, weights=each).max() for here, each in zip(placed, mine, strict=True)]
+        clash[place] = np.flatnonzero(labels_in_order[place] == common_labels[0])[0]
+    law = BoundedDistinct(labels_in_order, mine, width, clash)
+    largest = [
+        np.bincount(here, weights=each).max() for here, each in zip(labels_in_order, mine, strict=True)
+    ]
     return Differing(members, law, math.exp(law.bound + float(np.log(largest).sum())))

@@ -93,7 +93,7 @@ class LeftToChance:
 
 def left_to_chance(decision: Decision, checks: Sequence[Check]) -> tuple[LeftToChance, ...]:
     """Return the requirements on discrete values that are left to chance, each once."""
-    found = (
+    constraints = (
         LeftToChance(
             checks[number].label,
             None if (span := checks[number].span) is None else span.line,
@@ -101,7 +101,7 @@ def left_to_chance(decision: Decision, checks: Sequence[Check]) -> tuple[LeftToC
         )
         for number in decision.left
     )
-    return tuple(dict.fromkeys(found))
+    return tuple(dict.fromkeys(constraints))
 
 
 def findings(
@@ -111,10 +111,10 @@ def findings(
 
     ``domain`` is what is sampled: where it draws values of a component in boxes, together with continuous ones, the finding says so.
     """
-    joined = set[int]()
+    axes_in_boxes = set[int]()
     if domain is not None:
-        joined = set(chain.from_iterable(domain.joined_axes()))
-        joined -= {axis for one in domain.finite for axis in one.axes.tolist()}
+        axes_in_boxes = set(chain.from_iterable(domain.joined_axes()))
+        axes_in_boxes -= {axis for one in domain.finite for axis in one.axes.tolist()}
     problem = decision.problem
     if problem is None:
         return ()
@@ -125,7 +125,7 @@ def findings(
     )
     result = []
     for one, count in zip(decision.components, solve(counting), strict=True):
-        in_boxes = any(decision.variables[variable].number in joined for variable in one.variables)
+        in_boxes = any(decision.variables[variable].number in axes_in_boxes for variable in one.variables)
         met_constraints = {id(constraint) for constraint in one.met}
         chance = dict.fromkeys(
             checks[constraint.check].label

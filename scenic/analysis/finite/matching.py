@@ -26,13 +26,13 @@ def matchable(labels: Mapping[int, NDArray[np.intp]]) -> dict[int, Mask] | None:
     may = np.zeros((len(labels), width), dtype=np.bool_)
     for row, mine in zip(may, labels.values(), strict=True):
         row[mine] = True
-    matched = _matched(may)
-    if matched is None:
+    label_of_row = _matched(may)
+    if label_of_row is None:
         return None
-    count = len(matched)
+    count = len(label_of_row)
     # From each variable that could take another's label to that other; from a label that is free nobody needs to move on.
     owner = np.full(width, count)
-    owner[matched] = np.arange(count)
+    owner[label_of_row] = np.arange(count)
     reach = np.eye(count + 1, dtype=np.bool_)
     for variable in range(count):
         reach[variable, owner[may[variable]]] = True

@@ -139,16 +139,18 @@ def _exclusive(reduced: Reduced, bundles: Sequence[tuple[int, ...]]) -> Exclusiv
     )
     if labels is None:
         return None
-    chosen = [best[frozenset(pair)] for pair in combinations(labels, 2)]
-    met = [constraint for constraint, _, _ in chosen]
-    implied = {frozenset(table.scope): table for _, table, _ in chosen}
+    pair_tables = [best[frozenset(pair)] for pair in combinations(labels, 2)]
+    met_constraints = [constraint for constraint, _, _ in pair_tables]
+    table_by_scope = {frozenset(table.scope): table for _, table, _ in pair_tables}
     for constraint in reduced.constraints:
         for table in reduced.tables([constraint])[:2]:
-            other = implied.get(frozenset(table.scope))
-            if other is not None and constraint not in met and _implies(other, table):
-                met.append(constraint)
-    named = [bundle_of[first] for first in labels]
-    return Exclusive(tuple(named), tuple(rows[first] for first in labels), labels, tuple(met))
+            other = table_by_scope.get(frozenset(table.scope))
+            if other is not None and constraint not in met_constraints and _implies(other, table):
+                met_constraints.append(constraint)
+    first_bundles = [bundle_of[first] for first in labels]
+    return Exclusive(
+        tuple(first_bundles), tuple(rows[first] for first in labels), labels, tuple(met_constraints)
+    )
 
 
 def _exclusion(option: tuple[Constraint, Table, Table]) -> tuple[bool, int, float]:
@@ -214,7 +216,7 @@ def occupied(reduced: Reduced, exclusive: Exclusive) -> Occupied | None:
     if width > MOST_LABELS:
         return None
     grouping = _Grouping(reduced, exclusive, width)
-    groups, joined = grouping.grouped()
+    groups, met_constraints = grouping.grouped()
     order = sorted(groups, key=lambda group: (-len(group.bundles), group.variables))
     draws = [[variable for variable in group.variables if variable in grouping.draws] for group in order]
     weights = tuple(_weights(reduced, mine, group.rows) for mine, group in zip(draws, order, strict=True))
@@ -228,7 +230,9 @@ def occupied(reduced: Reduced, exclusive: Exclusive) -> Occupied | None:
         tuple(int(place) for place in np.argsort(members)),
     )
     numbers = tuple(mine[0] for mine in draws)
-    return Occupied(tuple(sorted(members)), law, numbers, float(completions[0]), (*exclusive.met, *joined))
+    return Occupied(
+        tuple(sorted(members)), law, numbers, float(completions[0]), (*exclusive.met, *met_constraints)
+    )
 
 
 class _Grouping:
@@ -248,29 +252,29 @@ class _Grouping:
             group = self._group((number,), bundle, ())
             assert group is not None
             groups.append(group)
-        known = {id(constraint) for constraint in self._exclusive.met}
-        waiting = [one for one in self._reduced.constraints if id(one) not in known]
+        identities_met = {id(constraint) for constraint in self._exclusive.met}
+        waiting = [one for one in self._reduced.constraints if id(one) not in identities_met]
         waiting.sort(key=lambda constraint: constraint.tables[-1].allowed.mean())
-        joined: list[Constraint] = []
-        tried = 0
+        met_constraints: list[Constraint] = []
+        attempts = 0
         progress = True
-        while progress and tried < MOST_JOINED:
+        while progress and attempts < MOST_JOINED:
             progress = False
             for constraint in list(waiting):
-                touched = [group for group in groups if constraint.scope & set(group.variables)]
-                if not touched:
+                groups_in_scope = [group for group in groups if constraint.scope & set(group.variables)]
+                if not groups_in_scope:
                     continue
                 waiting.remove(constraint)
-                tried += 1
-                others = [group for group in groups if group not in touched]
-                whole = self._joined(touched, constraint)
+                attempts += 1
+                others = [group for group in groups if group not in groups_in_scope]
+                whole = self._joined(groups_in_scope, constraint)
                 if whole is not None and self._work([*others, whole]) <= MOST_WORK:
                     groups = [*others, whole]
-                    joined.append(constraint)
+                    met_constraints.append(constraint)
                     progress = True
-                if tried == MOST_JOINED:
+                if attempts == MOST_JOINED:
                     break
-        return groups, joined
+        return groups, met_constraints
 
     def _joined(self, groups: Sequence[_Group], constraint: Constraint) -> _Group | None:
         bundles = tuple(sorted(number for group in groups for number in group.bundles))
@@ -319,12 +323,12 @@ def _weights(reduced: Reduced, variables: Sequence[int], rows: NDArray[np.intp])
 def _completions(groups: Sequence[_Group], weights: Sequence[Floats], width: int) -> Floats:
     """The weight of all choices of the groups that are left, for each set of used labels."""
     counts = _set_bits(width)
-    taken = sum(len(group.bundles) for group in groups)
+    label_count = sum(len(group.bundles) for group in groups)
     completions = np.zeros(1 << width)
-    completions[counts == taken] = 1.0
+    completions[counts == label_count] = 1.0
     for group, each in zip(reversed(groups), reversed(weights), strict=True):
-        taken -= len(group.bundles)
-        sets = np.flatnonzero(counts == taken)
+        label_count -= len(group.bundles)
+        sets = np.flatnonzero(counts == label_count)
         masks, place = np.unique(group.bits, return_inverse=True)
         sums = np.bincount(place.ravel(), weights=each, minlength=len(masks))
         for mask, weight in zip(masks.tolist(), sums.tolist(), strict=True):

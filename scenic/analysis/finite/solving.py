@@ -112,14 +112,14 @@ def _solved(problem: FiniteProblem, constraints: Sequence[Constraint]) -> Compon
             break
         if not consistent(tables, domains):
             return nothing
-    struck = float(np.prod([reduced.weights[variable].sum() for variable in draws]))
-    share = float(np.prod([drawn.share for drawn in best[0]])) if best[0] else struck
+    share_of_values = float(np.prod([reduced.weights[variable].sum() for variable in draws]))
+    share = float(np.prod([drawn.share for drawn in best[0]])) if best[0] else share_of_values
     if share <= 0:
         return nothing
     law = best[0][0].law if best[0] else None
     count = len(law.rows) if isinstance(law, Listed) else None
-    kept = best[0] if share <= GAIN else ()
-    return Component(draws, domains, every, kept, best[1] if kept else (), share, count)
+    draws_made = best[0] if share <= GAIN else ()
+    return Component(draws, domains, every, draws_made, best[1] if draws_made else (), share, count)
 
 
 def _exact(
@@ -218,24 +218,26 @@ def _strongest(
 ) -> tuple[tuple[Drawn, ...], tuple[Constraint, ...]]:
     """Return draws that meet the strongest constraints, by elimination alone, or after values that differ."""
     # What values that were struck out have decided holds however the others are drawn.
-    decided = [constraint for constraint in reduced.constraints if not reduced.tables([constraint])]
+    always_met = [constraint for constraint in reduced.constraints if not reduced.tables([constraint])]
     ways = [_relaxed(reduced, reduced.constraints, frozenset())]
     for exclusive in sets:
-        drawn, met = _differing(reduced, exclusive)
+        drawn, met_here = _differing(reduced, exclusive)
         if drawn is not None:
             others, more = _relaxed(reduced, reduced.constraints, frozenset(drawn.variables))
-            ways.append(((drawn, *others), (*met, *more)))
+            ways.append(((drawn, *others), (*met_here, *more)))
     drawn_best, met_best = min(ways, key=lambda way: float(np.prod([drawn.share for drawn in way[0]])))
-    return drawn_best, tuple(dict.fromkeys([*met_best, *decided]))
+    return drawn_best, tuple(dict.fromkeys([*met_best, *always_met]))
 
 
 def _differing(reduced: Reduced, exclusive: Exclusive) -> tuple[Drawn | None, tuple[Constraint, ...]]:
     """Return the way by values of which each occurs at most once, and the constraints that it meets always."""
-    taken = occupied(reduced, exclusive)
-    if taken is not None:
-        values = tuple(reduced.values[variable] for variable in taken.variables)
+    occupation = occupied(reduced, exclusive)
+    if occupation is not None:
+        values = tuple(reduced.values[variable] for variable in occupation.variables)
         way = "each value at most once"
-        return Drawn(taken.variables, values, taken.law, taken.numbers, taken.weight, way), taken.met
+        return Drawn(
+            occupation.variables, values, occupation.law, occupation.numbers, occupation.weight, way
+        ), occupation.met
     differ = bounded(exclusive.labels, reduced.weights) if exclusive.are_single else None
     if differ is None:
         return None, ()

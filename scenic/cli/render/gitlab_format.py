@@ -43,7 +43,7 @@ def _finding(diagnostic: Diagnostic, fingerprint: str) -> dict[str, Any]:
 
 
 def _text_at(diagnostic: Diagnostic, report: Report) -> str:
-    """The line of a diagnostic, without its indentation."""
+    """Return the line of a diagnostic, without its indentation."""
     source = report.sources.get(diagnostic.filename)
     if source is None or diagnostic.span is None:
         return ""

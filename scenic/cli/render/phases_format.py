@@ -44,7 +44,7 @@ def _said(first: Diagnostic) -> str:
 
 
 def _worst(errors: list[Diagnostic], report: Report) -> tuple[str, Diagnostic | None]:
-    """The first phase in which one of some errors of a file comes up, and that error."""
+    """Return the first phase in which one of some errors of a file appears, and that error."""
     if not errors:
         return PASSES, None
     source = report.sources.get(errors[0].filename)

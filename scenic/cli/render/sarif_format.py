@@ -161,5 +161,5 @@ def _folder_uri(folder: Path) -> str:
 
 
 def _encodable(text: str) -> str:
-    """A text without lone surrogates, which a program may hold, and UTF-8 may not."""
+    """Replace lone surrogates in a text: a program may contain them, and UTF-8 may not."""
     return text.encode("utf-8", "replace").decode("utf-8")

@@ -93,7 +93,7 @@ def _block(diagnostic: Diagnostic, source: Source | None, paint: _Paint) -> Iter
 
 
 def _near(filename: str | None) -> str:
-    """The path from the current folder, if it lies there."""
+    """Return the path from the current folder, if the file lies there."""
     try:
         relative = os.path.relpath(filename or "")
     except ValueError:  # on another drive
@@ -119,7 +119,7 @@ def _advice(diagnostic: Diagnostic) -> Iterator[str]:
 
 
 def _marks(diagnostic: Diagnostic, span: Span, source: Source, colour: str) -> Iterator[_Mark]:
-    """The stretches to underline: of a span over several lines, its part of the first one."""
+    """Yield the stretches to underline: of a span over several lines, its part of the first one."""
     places = [(span, "^", "", colour)]
     places += [
         (label.span, "-", _visible(label.text), _BLUE)
@@ -194,7 +194,7 @@ def _cells(text: str) -> int:
 
 
 def _visible(text: str) -> str:
-    """The text without what would control a terminal: source texts and file names may hold anything."""
+    """Replace characters that would control a terminal: source texts and file names may contain any."""
     if text.isprintable():
         return text
     return "".join(

@@ -83,7 +83,7 @@ class CommonActions:
         return make(ast.Module, None, body=self.flat(statements), type_ignores=[])
 
     def flat(self, statements: list[Any]) -> list[ast.stmt]:
-        """Statements, of which those of one line come as a list."""
+        """Flatten a list of statements in which those of one line form a list."""
         for statement in statements:
             if type(statement) is list:
                 break

@@ -96,7 +96,7 @@ class ExpressionActions(CommonActions):
         return (make(ast.GeneratorExp, place, elt=element, generators=parts),)
 
     def one_subscript(self, node: ast.expr) -> ast.expr:
-        """A lone subscript; one with a star is a tuple."""
+        """Return a lone subscript; one with a star becomes a tuple."""
         if type(node) is not ast.Starred:
             return node
         return make(ast.Tuple, place_of(node), elts=[node], ctx=LOAD)
@@ -128,7 +128,7 @@ class ExpressionActions(CommonActions):
         return "u" if self._texts[index][0] == "u" else None
 
     def strings(self, pieces: Sequence[object], place: Place) -> ast.expr | None:
-        """Adjacent strings and f-strings as one node."""
+        """Join adjacent strings and f-strings in one node."""
         return formatted.joined(self, self._tokens, pieces, place)
 
     def replacement_field(
@@ -140,7 +140,7 @@ class ExpressionActions(CommonActions):
         specification: tuple[int, list[Any]] | None,
         closing: int,
     ) -> list[ast.expr] | None:
-        """The nodes of a replacement field of an f-string."""
+        """Return the nodes of a replacement field of an f-string."""
         return formatted.replacement_field(
             self, self._tokens, opening, value, equals, conversion, specification, closing
         )

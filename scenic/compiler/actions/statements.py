@@ -76,7 +76,7 @@ class StatementActions(DefinitionActions, ExpressionActions):
         return True
 
     def one_block(self, body: list[ast.stmt]) -> tuple[Any, ...]:
-        """The parts of a scenario that is all set-up."""
+        """Return the parts of a scenario whose whole body is set-up."""
         part = next((index for index, each in enumerate(body) if _annotated(each) in _PARTS), None)
         before = body[: part or 0]
         odd = next(
@@ -168,7 +168,7 @@ class StatementActions(DefinitionActions, ExpressionActions):
         return True
 
     def probability(self, index: int) -> float:
-        """The value of a probability; one that cannot be is reported, and moved to where it can."""
+        """Return the value of a probability; an impossible one is reported and replaced."""
         value = self.number_value(index)
         if isinstance(value, complex) or not 0 <= value <= 1:
             self._report(
@@ -235,7 +235,7 @@ def _annotated(statement: object) -> str | None:
 
 
 def _guard_word(statement: object) -> str | None:
-    """The word of what reads like a guard."""
+    """Return the word of a statement that reads like a guard."""
     name = _annotated(statement)
     return name if name in tree.GUARDS else None
 

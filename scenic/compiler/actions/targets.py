@@ -115,7 +115,7 @@ _DESCRIPTIONS: Final = {
 
 
 def describe(node: ast.expr) -> str:
-    """An expression in words."""
+    """Describe an expression in words."""
     if isinstance(node, ast.Constant):
         if node.value is None or node.value is True or node.value is False:
             return f"`{node.value}`"

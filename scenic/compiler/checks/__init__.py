@@ -107,7 +107,7 @@ MOST_OF_ONE_CODE: Final = 200
 
 
 def check(context: CheckContext, go_on: Callable[[], None] = lambda: None) -> tuple[Diagnostic, ...]:
-    """Findings about constructs that no program may contain, ordered by place.
+    """Report constructs that no program may contain, ordered by place.
 
     ``go_on`` is called now and then, and may raise to stop.
     """
@@ -123,7 +123,7 @@ _ATTRIBUTE: Final = "SC214"
 
 
 def lint(context: CheckContext, go_on: Callable[[], None] = lambda: None) -> tuple[Diagnostic, ...]:
-    """Findings about constructs that hardly mean what they say, or are bound to fail when they are reached; ordered by place.
+    """Report constructs that hardly mean what they say, or are bound to fail when they are reached, ordered by place.
 
     ``go_on`` is called now and then, and may raise to stop.
     """
@@ -145,7 +145,7 @@ def lint(context: CheckContext, go_on: Callable[[], None] = lambda: None) -> tup
 
 
 def _capped(found: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
-    """The diagnostics without those of one code that nobody would read any more."""
+    """Yield the diagnostics without those of one code that are too many to be read."""
     counts: Counter[str] = Counter()
     for item in found:
         counts[item.code] += 1

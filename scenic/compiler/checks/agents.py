@@ -68,7 +68,7 @@ def _given(context: CheckContext) -> Iterator[tuple[ast.expr, ast.expr]]:
 
 
 def _abilities(model: Model, agent: Symbol) -> frozenset[str] | None:
-    """The abilities of the instances of a class; ``None`` where that is not known."""
+    """Return the abilities of the instances of a class; ``None`` where they are not known."""
     able: set[str] = set()
     waiting, classes_done = [agent], set[Symbol]()
     while waiting:

@@ -94,7 +94,7 @@ def _call(node: ast.Call, _scope: Scope, context: CheckContext) -> Iterator[Diag
 
 
 def _comparison(node: ast.Compare, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    """``(relative heading of x) < 30``: an angle against a number that is none."""
+    """Report mistakes such as ``(relative heading of x) < 30``: an angle against a number that is none."""
     sides = [node.left, *node.comparators]
     if any(_is_angle(side, context) for side in sides):
         for side in sides:
@@ -130,14 +130,14 @@ def _found(context: CheckContext, value: ast.expr | None, what: str) -> Iterator
 
 
 def _deg_after(place: ast.expr, context: CheckContext) -> str:
-    """The operator, and a blank where a word follows at once: ``(90)by``."""
+    """Return the operator, with a blank where a word follows at once: ``(90)by``."""
     span = context.source.span(place)
     following = context.source.line(span.end_line)[span.end_column : span.end_column + 1]
     return " deg " if following.isidentifier() else " deg"
 
 
 def _degrees(value: ast.expr | None, context: CheckContext, depth: int = _DEEPEST) -> Iterator[ast.expr]:
-    """The parts of an angle that read as degrees, each of which ``deg`` can follow."""
+    """Yield the parts of an angle that read as degrees, each of which ``deg`` can follow."""
     if value is None or not depth:
         return
     if isinstance(value, ast.Tuple | ast.List):

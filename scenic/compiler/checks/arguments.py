@@ -33,12 +33,12 @@ _CHOICES: Final = frozenset({"Uniform"})
 
 
 def kind_of(definition: ast.AST) -> str:
-    """The kind of a definition, in a word."""
+    """Return the kind of a definition, in a word."""
     return _KINDS[type(definition)]
 
 
 def _parameters(definition: Any) -> ast.arguments | None:
-    """The parameters of what can be called like a function; ``None`` for classes."""
+    """Return the parameters of what can be called like a function; ``None`` for classes."""
     if isinstance(definition, ast.ClassDef):
         return None
     empty = ast.arguments(posonlyargs=[], args=[], kwonlyargs=[], kw_defaults=[], defaults=[])
@@ -46,7 +46,7 @@ def _parameters(definition: Any) -> ast.arguments | None:
 
 
 def required_parameters(definition: object) -> list[str]:
-    """The parameters that every call must give, in order."""
+    """Return the parameters that every call must give, in order."""
     args = _parameters(definition)
     return [] if args is None else _required(args)
 
@@ -127,7 +127,7 @@ def _known(node: ast.Call, context: CheckContext) -> _Callee | None:
 def _too_many(
     node: ast.Call, positional: Sequence[ast.arg], callee: _Callee, context: CheckContext
 ) -> Diagnostic:
-    """More positional arguments than there are parameters."""
+    """Return the diagnostic of more positional arguments than there are parameters."""
     count, given_count = len(positional), len(node.args)
     if count == 1 and positional[0].arg in _VECTORS and given_count in (2, 3) and not node.keywords:
         return _one_vector(node, callee.title, positional[0].arg, callee, context)
@@ -212,7 +212,7 @@ _PLACES: Final = frozenset({"location", "place", "point", "pos", "position"})
 def _one_vector(
     node: ast.Call, title: str, parameter: str, callee: _Callee, context: CheckContext
 ) -> Diagnostic:
-    """SC211: ``SetPositionAction(1, 2)``."""
+    """Return SC211 for ``SetPositionAction(1, 2)``."""
     first, last = context.source.span(node.args[0]), context.source.span(node.args[-1])
     texts = [context.text(each) for each in node.args]
     vector = f"({', '.join(text for text in texts if text)})"
@@ -233,7 +233,7 @@ def _one_vector(
 def _apart(
     node: ast.Call, positional: list[ast.arg], callee: _Callee, context: CheckContext
 ) -> Iterator[Diagnostic]:
-    """SC211: ``WalkTo(3, 4)``, whose first parameter is a place."""
+    """Report SC211 for ``WalkTo(3, 4)``, whose first parameter is a place."""
     if len(node.args) not in (2, 3) or not positional or positional[0].arg not in _PLACES:
         return
     kinds = [context.kind_of(each) for each in node.args]
@@ -247,7 +247,7 @@ _NOT_NUMBERS: Final = frozenset(
 
 
 def _no_numbers(node: ast.Call, callee: _Callee, context: CheckContext) -> Iterator[Diagnostic]:
-    """SC404: ``FollowLaneBehavior(target_speed="fast")``: text for a parameter whose default or annotation is a number."""
+    """Report SC404 for ``FollowLaneBehavior(target_speed="fast")``: text for a parameter whose default or annotation is a number."""
     args = callee.args
     every = [*args.posonlyargs, *args.args]
     positional = every[callee.skip :]
@@ -296,7 +296,7 @@ def _no_numbers(node: ast.Call, callee: _Callee, context: CheckContext) -> Itera
 
 
 def _own_method(function: ast.expr, context: CheckContext) -> Symbol | None:
-    """The method that ``self.name`` can only mean, in a method of a class without bases that the text does not show."""
+    """Return the method that ``self.name`` can only mean, in a method of a class without bases that the text does not show."""
     if not (isinstance(function, ast.Attribute) and isinstance(function.value, ast.Name)):
         return None
     binding = context.binding(function.value)
@@ -328,19 +328,19 @@ def _own_method(function: ast.expr, context: CheckContext) -> Symbol | None:
 
 
 def _specifier(node: scenic.SpecifierPhrase, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    """``with behavior B``: the behavior is then made without arguments."""
+    """Report mistakes such as ``with behavior B``: the behavior is then made without arguments."""
     if node.property == "behavior" and node.operands:
         yield from _uncalled(node.operands[0], context)
 
 
 def _property(node: scenic.PropertyDef, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    """``behavior: B`` in a class."""
+    """Report mistakes such as ``behavior: B`` in a class."""
     if node.name == "behavior":
         yield from _uncalled(node.value, context)
 
 
 def _do(node: Any, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    """``do f``, ``do f()``: only behaviors, monitors and scenarios can be run."""
+    """Report mistakes such as ``do f``, ``do f()``: only behaviors, monitors and scenarios can be run."""
     for target in node.targets:
         is_call = isinstance(target, ast.Call)
         function = target.func if isinstance(target, ast.Call) else target

@@ -36,7 +36,7 @@ class Block(NamedTuple):
 
 
 def blocks(tree: ast.Module, statements: Iterable[ast.stmt]) -> Iterator[Block]:
-    """Every block of some statements of a module, outer ones before those in them."""
+    """Yield every block of some statements of a module, outer ones before those in them."""
     stack = [Block(tree, list(statements), Where())]
     while stack:
         block = stack.pop()
@@ -47,7 +47,7 @@ def blocks(tree: ast.Module, statements: Iterable[ast.stmt]) -> Iterator[Block]:
 
 
 def _inner(node: object, where: Where) -> Iterable[Block]:
-    """The blocks directly in a statement."""
+    """Return the blocks directly in a statement."""
     inner = where._replace(in_class_block=False) if where.in_class_block else where
     match node:
         case ast.FunctionDef() | ast.AsyncFunctionDef():
@@ -129,7 +129,7 @@ _PLACES: Final = {
 
 
 def where_of(node: object, scope: Scope) -> Where:
-    """The surroundings of an expression in ``scope``, apart from loops and the like."""
+    """Return the surroundings of an expression in ``scope``, apart from loops and the like."""
     function: str | None = None
     for outer in scope.ancestors():
         if outer.kind is ScopeKind.FUNCTION:

@@ -67,7 +67,7 @@ def _class(node: ast.ClassDef, _scope: Scope, context: CheckContext) -> Iterator
 
 
 def check_size(name: str, value: ast.expr | None, context: CheckContext) -> Iterator[Diagnostic]:
-    """SC405: an extent of an object that is a number and not positive."""
+    """Report SC405 for an extent of an object that is a number and not positive."""
     number = literal_number(value)
     if value is not None and name in _POSITIVE and number is not None and number <= 0:
         yield context.error(
@@ -79,7 +79,7 @@ def check_size(name: str, value: ast.expr | None, context: CheckContext) -> Iter
 
 
 def _new(node: scenic.New, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    """``new Object with width 0``."""
+    """Report mistakes such as ``new Object with width 0``."""
     if context.built_in(node.cls) == "Object":
         for specifier in node.specifiers:
             if specifier.property is not None and specifier.operands:

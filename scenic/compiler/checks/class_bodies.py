@@ -35,7 +35,7 @@ def _class(node: ast.ClassDef, _scope: Scope, context: CheckContext) -> Iterator
 def _attribute(
     context: CheckContext, node: ast.ClassDef, target: ast.Name, value: ast.expr, *, known: bool
 ) -> Diagnostic:
-    """SC313: ``width = 0.3``."""
+    """Return SC313 for ``width = 0.3``."""
     start, end = context.source.span(target), context.source.span(value)
     between = Span(start.end_line, start.end_column, end.line, end.column)
     plain = (
@@ -58,7 +58,7 @@ def _misspelt(
     inherited: Mapping[str, ClassMember],
     own: set[str],
 ) -> Iterator[Diagnostic]:
-    """SC300: ``lenght: 4``, of which nothing else in the program speaks."""
+    """Report SC300 for ``lenght: 4``, of which nothing else in the program speaks."""
     name = item.name
     if name in context.attributes or name in context.given:
         return

@@ -69,7 +69,7 @@ def _truth(condition: ast.expr) -> bool | None:
 
 
 def _simple_truth(value: ast.expr) -> bool | None:
-    """The truth of an operand that is a plain literal."""
+    """Return the truth of an operand that is a plain literal."""
     return bool(value.value) if isinstance(value, ast.Constant) else None
 
 
@@ -135,7 +135,7 @@ def _makes_generator(body: list[ast.stmt]) -> bool:
 def _constant(
     condition: ast.expr, context: CheckContext, what: str, *, literals: bool
 ) -> Iterator[Diagnostic]:
-    """SC306 for a condition that is known beforehand."""
+    """Report SC306 for a condition that is known beforehand."""
     truth_value = truth(condition)
     if truth_value is not None:
         if not literals:
@@ -179,7 +179,7 @@ def _constant(
 
 
 def _comparison(node: ast.Compare, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    """``x == x``; ``x != x`` is excepted, since it tests for a value that is not a number."""
+    """Report mistakes such as ``x == x``; ``x != x`` is excepted, since it tests for a value that is not a number."""
     left = node.left
     for op, right in zip(node.ops, node.comparators, strict=False):
         if type(op) is not ast.NotEq and _same(left, right):

@@ -220,7 +220,7 @@ class CheckContext(Model):
         return place if isinstance(place, Span) else header_span(self.source, place)
 
     def text(self, node: ast.AST) -> str | None:
-        """The text of a node; ``None`` if it takes several lines."""
+        """Return the text of a node; ``None`` if it takes several lines."""
         span = self.source.span(node)
         return (
             self.source.line(span.line)[span.column : span.end_column] if span.end_line == span.line else None

@@ -17,7 +17,7 @@ __all__ = ["check_declarations"]
 
 
 def check_declarations(context: CheckContext) -> Iterator[Diagnostic]:
-    """SC110, SC200, SC210, SC220 and SC300 in declarations and specifiers."""
+    """Report SC110, SC200, SC210, SC220 and SC300 in declarations and specifiers."""
     for node, _ in context.nodes(ast.ClassDef):
         definitions = [item for item in node.body if isinstance(item, scenic.PropertyDef)]
         yield from _duplicates(context, [(item.name, item) for item in definitions], "property")
@@ -39,7 +39,7 @@ def check_declarations(context: CheckContext) -> Iterator[Diagnostic]:
 
 
 def _self(context: CheckContext, node: Any) -> Iterator[Diagnostic]:
-    """SC200: ``behavior Come(self, speed)``."""
+    """Report SC200 for ``behavior Come(self, speed)``."""
     parameters = [] if node.args is None else [*node.args.posonlyargs, *node.args.args]
     if parameters and parameters[0].arg == "self":
         kind = "behavior" if isinstance(node, scenic.BehaviorDef) else "monitor"

@@ -23,7 +23,7 @@ _KEPT: Final = re.compile(r"^_|cache|memo", re.IGNORECASE)
 
 
 def check_defaults(context: CheckContext) -> Iterator[Diagnostic]:
-    """SC309: a list, dictionary or set that is the default of a parameter and changed in the body."""
+    """Report SC309 for a list, dictionary or set that is the default of a parameter and changed in the body."""
     changes: dict[ast.AST, ast.AST] | None = None
     for cls in (
         ast.FunctionDef,
@@ -63,7 +63,7 @@ def _mutable(default: ast.expr | None, context: CheckContext) -> bool:
 
 
 def _changed(context: CheckContext) -> dict[ast.AST, ast.AST]:
-    """The parameters, bound just once, whose values are changed, and where."""
+    """Return the parameters, bound just once, whose values are changed, and where."""
     places: dict[ast.AST, ast.AST] = {}
 
     def note(target: object, place: ast.AST) -> None:

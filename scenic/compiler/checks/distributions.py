@@ -82,7 +82,7 @@ def _without_weights(node: ast.Call, context: CheckContext) -> Diagnostic:
 
 
 def _weights(node: ast.Call, context: CheckContext) -> Iterator[Diagnostic]:
-    """SC405: ``DiscreteRange(1, 3, [1, 2])``."""
+    """Report SC405 for ``DiscreteRange(1, 3, [1, 2])``."""
     arguments = dict(zip(("low", "high", "weights"), node.args, strict=False))
     arguments.update((each.arg, each.value) for each in node.keywords if each.arg is not None)
     low, high = literal_number(arguments.get("low")), literal_number(arguments.get("high"))

@@ -43,7 +43,7 @@ _OWN_BODIES: Final = (
 
 
 def check_flow(context: CheckContext) -> Iterator[Diagnostic]:
-    """SC303: code that is never reached; SC304, SC305: no time passes."""
+    """Report SC303 for code that is never reached, and SC304 and SC305 where no time passes."""
     endless: set[ast.AST] = set()
     for _, statements, where in context.blocks:
         yield from _after_end(statements, where, context)

@@ -143,7 +143,7 @@ def _choice(node: ast.Name, call: ast.Call, context: CheckContext) -> Meant:
 
 
 def keyword_meant(node: ast.Name, context: CheckContext) -> str | None:
-    """The keyword that makes sense of the line of an undefined name: ``requre (x) > 0``, ``facing twoard (3, 4)``."""
+    """Return the keyword that makes sense of the line of an undefined name: ``requre (x) > 0``, ``facing twoard (3, 4)``."""
     span = context.source.span(node)
     line = context.source.line(span.line)
     if len(line) > _LONGEST or span.line != span.end_line:

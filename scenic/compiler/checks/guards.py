@@ -13,7 +13,7 @@ __all__ = ["check_guards"]
 
 
 def check_guards(context: CheckContext) -> Iterator[Diagnostic]:
-    """SC310: ``precondtion: condition`` in a behavior or scenario."""
+    """Report SC310 for ``precondtion: condition`` in a behavior or scenario."""
     for cls in (scenic.BehaviorDef, scenic.ScenarioDef):
         for node, _ in context.nodes(cls):
             body = node.body if isinstance(node, scenic.BehaviorDef) else node.setup or []

@@ -11,7 +11,7 @@ __all__ = ["check_instances", "missing_new"]
 
 
 def check_instances(context: CheckContext) -> Iterator[Diagnostic]:
-    """SC111: ``ego = Car``, and a class that is a whole statement."""
+    """Report SC111 for ``ego = Car``, and for a class that is a whole statement."""
     for block in context.blocks:
         for statement in block.statements:
             cls = statement.value if isinstance(statement, ast.Assign | ast.Expr) else None
@@ -30,7 +30,7 @@ def check_instances(context: CheckContext) -> Iterator[Diagnostic]:
 def missing_new(
     cls: ast.Name, context: CheckContext, example: str, severity: Severity = Severity.ERROR
 ) -> Diagnostic:
-    """SC111 at a class; ``example`` is what to write instead."""
+    """Return SC111 for a class; ``example`` is what to write instead."""
     message, help_ = f"`new` is missing before `{cls.id}`", f"to create an object write `{example}`"
     if severity is not Severity.ERROR:
         # The statement does nothing, but it is no mistake for certain.

@@ -93,7 +93,7 @@ def _is_near(node: ast.Attribute, brought: Mapping[str, Exported]) -> bool:
 
 
 def _chain(node: ast.expr, resolution: Resolution, brought: Collection[str]) -> str | None:
-    """A text that stands for the value of an expression, which begins with a name of one meaning; ``None`` of other expressions."""
+    """Return a text that stands for the value of an expression, which begins with a name of one meaning; ``None`` for other expressions."""
     words: list[str] = []
     while not isinstance(node, ast.Name):
         match node:
@@ -206,7 +206,7 @@ def _has_like_words(name: str, meant: str) -> bool:
 
 
 def _owner_beside(symbol: Symbol, name: str) -> str | None:
-    """A class beside a class of the library that defines a name itself."""
+    """Return a class beside a class of the library that defines a name itself."""
     for node in () if symbol.module is None else symbol.module.tree.body:
         if isinstance(node, ast.ClassDef) and node.name != symbol.name:
             for part in node.body:

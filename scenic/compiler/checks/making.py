@@ -23,7 +23,7 @@ _RUN: Final = {
 
 
 def _call(node: ast.Call, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    """SC135: ``ego = Object(width=3)``."""
+    """Report SC135 for ``ego = Object(width=3)``."""
     if not isinstance(node.func, ast.Name):
         return
     if context.provided(node.func) == "workspace":
@@ -51,7 +51,7 @@ def _call(node: ast.Call, _scope: Scope, context: CheckContext) -> Iterator[Diag
 
 
 def _assign(node: ast.Assign, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    """SC311: ``ego = new Object at 1, 2``."""
+    """Report SC311 for ``ego = new Object at 1, 2``."""
     value = node.value
     yield from _bound_simulator(node, context)
     if not (isinstance(value, ast.Tuple) and value.elts and isinstance(value.elts[0], scenic.New)):
@@ -80,7 +80,7 @@ def _assign(node: ast.Assign, _scope: Scope, context: CheckContext) -> Iterator[
 
 
 def _bound_simulator(node: ast.Assign, context: CheckContext) -> Iterator[Diagnostic]:
-    """SC307: ``simulator = NewtonianSimulator()``."""
+    """Report SC307 for ``simulator = NewtonianSimulator()``."""
     match node:
         case ast.Assign(
             targets=[ast.Name(id="simulator") as name], value=ast.Call(func=ast.Name(id=simulator_name))
@@ -108,7 +108,7 @@ def _last_operand(node: scenic.New) -> ast.expr | None:
 
 
 def _statement(node: ast.Expr, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    """SC312: a behavior, monitor or scenario that is called without `do` or `require monitor`."""
+    """Report SC312 for a behavior, monitor or scenario that is called without `do` or `require monitor`."""
     value = node.value
     callee = value.func if isinstance(value, ast.Call) else value
     if not isinstance(callee, ast.Name | ast.Attribute):
@@ -137,7 +137,7 @@ def _statement(node: ast.Expr, scope: Scope, context: CheckContext) -> Iterator[
 
 
 def check_monitors(context: CheckContext) -> Iterator[Diagnostic]:
-    """SC114: ``require M()`` where ``M`` is a monitor."""
+    """Report SC114 for ``require M()`` where ``M`` is a monitor."""
     for node, _ in context.nodes(scenic.Require):
         yield from _required(node, context)
 
@@ -164,7 +164,7 @@ def _required(node: scenic.Require, context: CheckContext) -> Iterator[Diagnosti
 def _do(
     node: scenic.Do | scenic.DoChoose | scenic.DoShuffle, scope: Scope, context: CheckContext
 ) -> Iterator[Diagnostic]:
-    """SC314: ``do`` with what cannot be done there."""
+    """Report SC314 for ``do`` with what cannot be done there."""
     match where_of(node, scope).place:
         case Place.COMPOSE:
             kinds: tuple[str, ...] = ("scenario",)
@@ -183,12 +183,12 @@ def _do(
 def _require_monitor(
     node: scenic.RequireMonitor, _scope: Scope, context: CheckContext
 ) -> Iterator[Diagnostic]:
-    """SC314: ``require monitor`` with something else than a monitor."""
+    """Report SC314 for ``require monitor`` with something else than a monitor."""
     yield from _wrong(node.monitor, ("monitor",), "require monitor", context)
 
 
 def _specifier(node: scenic.SpecifierPhrase, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    """SC314: ``with behavior`` with something else than a behavior."""
+    """Report SC314 for ``with behavior`` with something else than a behavior."""
     if node.property == "monitor":
         text = context.text(node.operands[0]) if node.operands and node.operands[0] is not None else None
         yield context.warning(
@@ -238,7 +238,7 @@ def _wrong(
 
 
 def _new(node: scenic.New, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    """SC401: an object that is made while a simulation runs."""
+    """Report SC401 for an object that is made while a simulation runs."""
     where = where_of(node, scope)
     if where.place in DYNAMIC and where.function is None and context.built_in(node.cls) == "Object":
         yield context.error(
@@ -250,7 +250,7 @@ def _new(node: scenic.New, scope: Scope, context: CheckContext) -> Iterator[Diag
 
 
 def _take(node: scenic.Take, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    """SC314: ``take SetBrakeAction``."""
+    """Report SC314 for ``take SetBrakeAction``."""
     for action in node.actions:
         callee = action.func if isinstance(action, ast.Call) else action
         symbol = context.definition(callee)

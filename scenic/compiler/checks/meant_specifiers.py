@@ -19,7 +19,7 @@ _DIRECTIONS: Final = frozenset({"is ahead of", "is behind", "is left of", "is ri
 
 
 def check_meant_specifiers(context: CheckContext) -> Iterator[Diagnostic]:
-    """SC111, SC113 and SC311: a specifier without `new`, without a comma before it, or missing after one."""
+    """Report SC111, SC113 and SC311 for a specifier without `new`, without a comma before it, or missing after one."""
     for cls in (ast.Assign, ast.Expr):
         for node, _ in context.nodes(cls):
             targets = node.targets if cls is ast.Assign else ()
@@ -33,7 +33,7 @@ def check_meant_specifiers(context: CheckContext) -> Iterator[Diagnostic]:
 def _dangling_comma(
     value: ast.expr, targets: Sequence[ast.expr], context: CheckContext
 ) -> Iterator[Diagnostic]:
-    """``ego = new Object with width 3,``."""
+    """Report mistakes such as ``ego = new Object with width 3,``."""
     if not (isinstance(value, ast.Tuple) and len(value.elts) == 1 and isinstance(value.elts[0], scenic.New)):
         return
     (first,) = value.elts
@@ -62,7 +62,7 @@ def _dangling_comma(
 
 
 def _not_indented(line: int, context: CheckContext) -> Diagnostic:
-    """SC102: ``facing (3, 4)`` on a line of its own, which reads as a statement."""
+    """Return SC102 for ``facing (3, 4)`` on a line of its own, which reads as a statement."""
     text = context.source.line(line)
     column = len(text) - len(text.lstrip())
     return context.error(
@@ -75,7 +75,7 @@ def _not_indented(line: int, context: CheckContext) -> Diagnostic:
 
 
 def _missing_new(node: scenic.Operation, context: CheckContext) -> Iterator[Diagnostic]:
-    """``Chair left of table``."""
+    """Report mistakes such as ``Chair left of table``."""
     if node.operator not in _DIRECTIONS:
         return
     left = node.operands[0]
@@ -94,7 +94,7 @@ def _missing_new(node: scenic.Operation, context: CheckContext) -> Iterator[Diag
 
 
 def _missing_comma(node: scenic.SpecifierPhrase, context: CheckContext) -> Iterator[Diagnostic]:
-    """``new Chair at x left of table``: no specifier takes the answer of such a question but ``with``."""
+    """Report mistakes such as ``new Chair at x left of table``: no specifier takes the answer of such a question but ``with``."""
     operand = node.operands[-1] if node.operands else None
     if node.specifier in _PLACES and operand is not None:
         yield from _second_place(node, operand, context)
@@ -124,7 +124,7 @@ def _missing_comma(node: scenic.SpecifierPhrase, context: CheckContext) -> Itera
 def _second_place(
     node: scenic.SpecifierPhrase, operand: ast.expr, context: CheckContext
 ) -> Iterator[Diagnostic]:
-    """SC301: ``new Object at (0, 0) at (1, 1)``, ``new Object at x in y``, which read as operators."""
+    """Report SC301 for ``new Object at (0, 0) at (1, 1)``, ``new Object at x in y``, which read as operators."""
     match operand:
         case scenic.Operation(operator="at", operands=[ast.expr() as left, _]):
             word = "at"

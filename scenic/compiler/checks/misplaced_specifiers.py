@@ -13,7 +13,7 @@ _SPECIFIER: Final = re.compile(rf"({_WORDS})\b(?!\s*(?:=(?!=)|[.,]|$))")
 
 
 def continuation_after(source: Source, line: int) -> int | None:
-    """The next line with text after ``line``, if it begins with a specifier and has the same indentation."""
+    """Return the next line with text after ``line``, if it begins with a specifier and has the same indentation."""
     first = source.line(line)
     indentation = first[: len(first) - len(first.lstrip())]
     number = line + 1

@@ -44,7 +44,7 @@ _NOT_SCENIC: Final = frozenset({NameKind.DISTRIBUTION, NameKind.FUNCTION, NameKi
 
 
 def check_reserved(context: CheckContext) -> Iterator[Diagnostic]:
-    """SC200: bindings of names with a fixed meaning (section 1.3)."""
+    """Report SC200 for bindings of names with a fixed meaning (section 1.3)."""
     for name, site in context.resolution.reserved:
         if name in TRACKED:
             message = f"`{name}` can only be set by `{name} = value`"
@@ -59,7 +59,7 @@ def check_reserved(context: CheckContext) -> Iterator[Diagnostic]:
 
 
 def check_names(context: CheckContext) -> Iterator[Diagnostic]:
-    """SC202: names that are read and that nothing binds; SC203 if they stand after ``new``."""
+    """Report SC202 for names that are read and that nothing binds; SC203 if they stand after ``new``."""
     resolution = context.resolution
     if context.wildcard:
         return
@@ -183,7 +183,7 @@ class _MissingNames:
 
 
 def _imported_model(context: CheckContext) -> Diagnostic | None:
-    """SC202: ``import scenic.domains.driving.model``, which brings no names but `scenic`."""
+    """Return SC202 for ``import scenic.domains.driving.model``, which brings no names but `scenic`."""
     for statement, _ in context.nodes(ast.Import):
         for alias in statement.names:
             if alias.name in LIBRARIES and alias.name.endswith("model") and alias.asname is None:
@@ -225,7 +225,7 @@ _SHORTEST_OF_WORDS: Final = 6
 
 
 def _known_elsewhere(context: CheckContext, node: ast.Name) -> Diagnostic | None:
-    """SC118, SC202: a name that is a misspelt keyword, or has a meaning in another language or library."""
+    """Return SC118, SC202 for a name that is a misspelt keyword, or has a meaning in another language or library."""
     keyword = keyword_meant(node, context)
     if keyword is not None:
         return context.error(
@@ -353,7 +353,7 @@ def _without_self(context: CheckContext, reference: Reference) -> Diagnostic:
 
 
 def check_classes(context: CheckContext) -> Iterator[Diagnostic]:
-    """SC203: classes after ``new`` that are none."""
+    """Report SC203 for names after ``new`` that are not classes."""
     for node, _ in context.nodes(scenic.New):
         yield from _no_class(context, node.cls)
 

@@ -20,7 +20,7 @@ __all__ = ["RULES"]
 
 
 def _call(node: ast.Call, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    """``CircularRegion(5, (0, 0))``, ``room.containsPoint(3)``."""
+    """Report mistakes such as ``CircularRegion(5, (0, 0))``, ``room.containsPoint(3)``."""
     name = context.provided(node.func)
     method = context.method(node.func) if name is None and isinstance(node.func, ast.Attribute) else None
     if (name not in NAMES and method is None) or may_be_meant(node, scope, context):
@@ -61,7 +61,7 @@ def _before_stars(args: Sequence[ast.expr]) -> Iterator[ast.expr]:
 
 
 def _statement(node: Any, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    """``mutate ego by "2"``, ``terminate after "10" seconds``."""
+    """Report mistakes such as ``mutate ego by "2"``, ``terminate after "10" seconds``."""
     declaration = STATEMENTS[type(node).__name__]
     for field, types in declaration.takes.items():
         value = getattr(node, field)

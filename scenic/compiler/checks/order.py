@@ -36,7 +36,7 @@ _SPECIFIERS: Final = frozenset(name for name, each in SPECIFIERS.items() if each
 
 
 def check_order(context: CheckContext) -> Iterator[Diagnostic]:
-    """SC204 and SC209."""
+    """Report SC204 and SC209 for names and for ``ego`` that are read before they have a value."""
     if context.broken:
         return
     starts = [position(statement) for statement in context.tree.body]
@@ -45,7 +45,7 @@ def check_order(context: CheckContext) -> Iterator[Diagnostic]:
 
 
 def _statement(starts: list[tuple[int, int]], node: ast.AST) -> int:
-    """The index of the statement of the module in which a node stands."""
+    """Return the index of the statement of the module that contains a node."""
     return bisect_right(starts, position(node)) - 1
 
 
@@ -99,7 +99,7 @@ def _names(context: CheckContext, starts: list[tuple[int, int]]) -> Iterator[Dia
 
 
 def _ego(context: CheckContext, starts: list[tuple[int, int]]) -> Iterator[Diagnostic]:
-    """SC209: an explicit or implicit use of the ego before the first assignment to it."""
+    """Report SC209 for an explicit or implicit use of the ego before the first assignment to it."""
     if context.resolution.reflective or any("ego".startswith(name.id) for name in begun_names(context)):
         return  # It may be set in ways that the text does not show, or be about to be.
     brings = (lambda _: True) if context.surroundings is None else context.surroundings.sets_ego
@@ -141,7 +141,7 @@ def _ego_of(
     uses: list[tuple[ast.AST, Scope]],
     end: int,
 ) -> Iterator[Diagnostic]:
-    """SC209 in the statements of one body up to the index ``end``, both with the scopes in which they stand."""
+    """Report SC209 in the statements of one body up to the index ``end``, both with the scopes in which they stand."""
     if not body or any(where is not scope for _, where in assignments):
         return  # A function that sets it may be called at any time.
     starts = [position(statement) for statement in body]

@@ -22,9 +22,9 @@ _EXPRESSIONS: Final = (ast.Await, ast.Yield, ast.YieldFrom)
 
 
 def check_placement(context: CheckContext) -> Iterator[tuple[ast.AST, Diagnostic | None]]:
-    """SC201: the misplaced nodes, each with its diagnostic.
+    """Yield the misplaced nodes, each with its SC201.
 
-    Nothing is said where that follows from another mistake.
+    A node has no diagnostic where its place follows from another mistake.
     """
     for _, statements, where in context.blocks:
         if where.broken:
@@ -60,7 +60,7 @@ def _misplaced_expressions(context: CheckContext) -> Iterator[tuple[ast.AST, Dia
 
 
 def _evaluated_later(context: CheckContext) -> set[ast.AST]:
-    """The expressions with ``await`` in conditions and values that become functions of their own."""
+    """Return the expressions with ``await`` in conditions and values that become functions."""
     awaiting = {node for node, _ in context.nodes(ast.Await)}
     if not awaiting:
         return set()

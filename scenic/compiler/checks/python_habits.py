@@ -63,7 +63,7 @@ def _full_name(function: ast.expr, context: CheckContext) -> str | None:
 
 
 def _call(node: ast.Call, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    """``random.uniform(0, 3)``, ``np.sqrt(x)`` with a random ``x``, ``time.sleep(3)``."""
+    """Report mistakes such as ``random.uniform(0, 3)``, ``np.sqrt(x)`` with a random ``x``, ``time.sleep(3)``."""
     if not isinstance(node.func, ast.Attribute | ast.Name) or context.provided(node.func) is not None:
         return
     name = _full_name(node.func, context)
@@ -124,7 +124,7 @@ def _draw(node: ast.Call, name: str, context: CheckContext) -> Diagnostic:
 
 
 def _statement(node: ast.Expr, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    """SC312: ``SetBrakeAction(1)`` in a behavior, without ``take``."""
+    """Report SC312 for ``SetBrakeAction(1)`` in a behavior, without ``take``."""
     call = node.value
     if not isinstance(call, ast.Call):
         return
@@ -152,7 +152,7 @@ def _is_action(definition: ast.ClassDef) -> bool:
 
 
 def _annotation(node: ast.AnnAssign, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    """SC307: ``self.height: 3`` in a method, which Python reads as an annotation."""
+    """Report SC307 for ``self.height: 3`` in a method, which Python reads as an annotation."""
     match node:
         case ast.AnnAssign(
             target=ast.Attribute() as target, annotation=ast.Constant(value=int() | float()), value=None
@@ -168,7 +168,7 @@ def _annotation(node: ast.AnnAssign, _scope: Scope, context: CheckContext) -> It
 
 
 def _class(node: ast.ClassDef, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    """SC307: ``def __init__`` in a class of objects."""
+    """Report SC307 for ``def __init__`` in a class of objects."""
     if context.class_at(node) is None:
         return
     for item in node.body:
@@ -185,7 +185,7 @@ def _class(node: ast.ClassDef, _scope: Scope, context: CheckContext) -> Iterator
 
 
 def check_maps(context: CheckContext) -> Iterator[Diagnostic]:
-    """SC620: a world model of roads, and no parameter `map` before it."""
+    """Report SC620 for a world model of roads without a parameter `map` before it."""
     models = [node for node, _ in context.nodes(scenic.Model) if node.name in NEEDS_MAP]
     if not models or not context.ego_value:
         return

@@ -95,7 +95,7 @@ def _is_asked_now(node: ast.expr | ast.stmt, scope: Scope, context: CheckContext
 def _decides(
     node: ast.If | ast.While | ast.IfExp, scope: Scope, context: CheckContext
 ) -> Iterator[Diagnostic]:
-    """SC403: ``if x > 1`` with a random ``x``."""
+    """Report SC403 for ``if x > 1`` with a random ``x``."""
     if isinstance(node.test, ast.UnaryOp) and isinstance(node.test.op, ast.Not):
         return  # `_truth` tells.
     if not (is_random(node.test, context) and _is_asked_now(node, scope, context)):
@@ -111,12 +111,12 @@ def _decides(
 
 
 def _iterates(node: ast.For, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    """SC403: ``for i in range(x)`` with a random ``x``."""
+    """Report SC403 for ``for i in range(x)`` with a random ``x``."""
     yield from _counts(node, node.iter, scope, context)
 
 
 def _comprehends(node: Any, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    """SC403: ``[new Object for i in range(x)]`` with a random ``x``."""
+    """Report SC403 for ``[new Object for i in range(x)]`` with a random ``x``."""
     for generator in node.generators:
         yield from _counts(node, generator.iter, scope, context)
         for test in generator.ifs:
@@ -153,7 +153,7 @@ def _counts(
 
 
 def _is_passed(node: ast.Call, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    """SC403: ``f(Range(0, 9))``, where the function ``f`` of the program decides by its parameter."""
+    """Report SC403 for ``f(Range(0, 9))``, where the function ``f`` of the program decides by its parameter."""
     symbol = context.definition(node.func)
     function = None if symbol is None else symbol.node
     if not isinstance(function, ast.FunctionDef) or any(isinstance(each, ast.Starred) for each in node.args):
@@ -190,7 +190,7 @@ def _is_passed(node: ast.Call, scope: Scope, context: CheckContext) -> Iterator[
 
 
 def _truth(node: ast.BoolOp | ast.UnaryOp, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    """SC403: ``x and y``, ``not x`` with a random ``x``."""
+    """Report SC403 for ``x and y``, ``not x`` with a random ``x``."""
     if isinstance(node, ast.UnaryOp):
         operands = [node.operand] if isinstance(node.op, ast.Not) else []
     else:
@@ -207,7 +207,7 @@ def _truth(node: ast.BoolOp | ast.UnaryOp, scope: Scope, context: CheckContext) 
 
 
 def _refusing(what: str, advice: str, asked: Callable[[Any], ast.expr | None]) -> NodeRule:
-    """A rule, SC403: the value that a node asks for must not be random; ``asked`` is ``None`` if the node asks for none."""
+    """Return a rule for SC403: the value that a node asks for must not be random; ``asked`` is ``None`` if the node asks for none."""
 
     def rule(node: Any, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
         value = asked(node)
@@ -236,7 +236,7 @@ _unpacks: Final = _refusing(
 
 
 def _indexes(node: ast.Subscript, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    """SC403: ``spots[DiscreteRange(0, 2)]``."""
+    """Report SC403 for ``spots[DiscreteRange(0, 2)]``."""
     kind = context.kind_of(node.value)
     if kind is None or kind.name not in ("list", "tuple", "dictionary") or is_random(node.value, context):
         return
@@ -250,7 +250,7 @@ def _indexes(node: ast.Subscript, scope: Scope, context: CheckContext) -> Iterat
 
 
 def _calls(node: ast.Call, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    """SC403: ``math.sqrt(x)``, ``sorted([x, y])`` with a random ``x``."""
+    """Report SC403 for ``math.sqrt(x)``, ``sorted([x, y])`` with a random ``x``."""
     yield from _is_passed(node, scope, context)
     if context.provided(node.func) == "sorted" and any(
         _holds_random(each, context) for each in node.args[:1]
@@ -314,7 +314,7 @@ def _is_module(name: ast.Name, module: str, context: CheckContext) -> bool:
 
 
 def _draws(node: scenic.Require, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    """SC401: ``require Range(1, 2) > x``."""
+    """Report SC401 for ``require Range(1, 2) > x``."""
     where = where_of(node, scope)
     if where.place not in (Place.TOP, Place.SETUP) or where.function is not None:
         return
@@ -341,7 +341,7 @@ def _in_condition(node: ast.expr | ast.stmt, context: CheckContext) -> bool:
 
 
 def _presences(node: ast.expr, context: CheckContext) -> Iterator[ast.expr]:
-    """The values of ``present`` that may stand around an expression: they are read as conditions."""
+    """Yield the values of ``present`` that may stand around an expression: they are read as conditions."""
     for phrase in context.nodes_around(node, scenic.SpecifierPhrase):
         if phrase.property == "present":
             yield from filter(None, phrase.operands)

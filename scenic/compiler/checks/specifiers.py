@@ -69,7 +69,7 @@ def _new(node: scenic.New, _scope: Scope, context: CheckContext) -> Iterator[Dia
 
 
 def _regions(specifiers: list[scenic.SpecifierPhrase], context: CheckContext) -> Iterator[Diagnostic]:
-    """SC404: a point where a region is wanted: ``in front of x``."""
+    """Report SC404 for a point where a region is wanted: ``in front of x``."""
     for specifier in specifiers:
         if specifier.specifier not in _OF_REGIONS:
             continue
@@ -90,7 +90,7 @@ def _regions(specifiers: list[scenic.SpecifierPhrase], context: CheckContext) ->
 
 
 def _conflicts(specifiers: list[scenic.SpecifierPhrase], context: CheckContext) -> Iterator[Diagnostic]:
-    """SC301: the same specifier twice, or two that give one property with the same priority."""
+    """Report SC301 for the same specifier twice, or two that give one property with the same priority."""
     strongest: dict[str, int] = {}
     for specifier in specifiers:
         for item in _specified(specifier):
@@ -137,7 +137,7 @@ def _conflicts(specifiers: list[scenic.SpecifierPhrase], context: CheckContext) 
 def _finals(
     node: scenic.New, properties: Mapping[str, ClassMember], context: CheckContext
 ) -> Iterator[Diagnostic]:
-    """SC301: properties that follow from others and cannot be given."""
+    """Report SC301 for properties that follow from others and cannot be given."""
     for specifier in node.specifiers:
         name = specifier.property
         if name is None or name not in properties or not properties[name].final:
@@ -169,7 +169,7 @@ def _finals(
 
 
 def _needs(specifier: scenic.SpecifierPhrase) -> tuple[str, ...]:
-    """The properties that the value of a specifier certainly depends on."""
+    """Return the properties that the value of a specifier certainly depends on."""
     declared = SPECIFIERS.get(specifier.specifier)
     if declared is None:
         return ()
@@ -187,7 +187,7 @@ def _is_vector(node: ast.expr | None) -> bool:
 def _cycle(
     node: scenic.New, properties: Mapping[str, ClassMember], context: CheckContext
 ) -> Iterator[Diagnostic]:
-    """SC308: a value that cannot be computed, because it needs itself in the end."""
+    """Report SC308 for a value that cannot be computed, because it needs itself in the end."""
     providers: dict[str, Any] = {}
     uncertain: set[str] = set()
     strength: dict[str, int] = {}

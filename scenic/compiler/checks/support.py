@@ -45,7 +45,7 @@ _CHECKED: Final = _checked()
 
 
 def check_support(context: CheckContext, misplaced: Container[ast.AST]) -> Iterator[Diagnostic]:
-    """SC900: every use of a feature that is declared but not available, but for statements that are misplaced anyway.
+    """Report SC900 for every use of a feature that is declared but not available, except in statements that are misplaced anyway.
 
     What only simulations run is refused when one comes to it; so may be what stands in a block whose beginning is wrong.
     """
@@ -71,7 +71,7 @@ def check_support(context: CheckContext, misplaced: Container[ast.AST]) -> Itera
 
 
 def check_supported_names(context: CheckContext) -> Iterator[Diagnostic]:
-    """SC900: every use of a name that is declared but not available."""
+    """Report SC900 for every use of a name that is declared but not available."""
     if _NAMES and not context.wildcard:
         for name in _NAMES.difference(context.resolution.names):
             for reference in context.resolution.uses.get(name, ()):
@@ -80,7 +80,7 @@ def check_supported_names(context: CheckContext) -> Iterator[Diagnostic]:
 
 
 def _class_without_new(node: scenic.Operation, context: CheckContext) -> ast.Name | None:
-    """The class in ``C at position``, which reads as the operator but can only be meant as a specifier."""
+    """Return the class in ``C at position``, which reads as the operator but can only be meant as a specifier."""
     match node:
         case scenic.Operation(operator="at", operands=[ast.Name(id=name) as cls, *_]):
             reference = context.resolution.references.get(cls)

@@ -57,7 +57,7 @@ _BINDING: Final = (
 
 @cache
 def _following() -> Mapping[tuple[str, str], str]:
-    """For two words that follow each other in a form of the language, the form."""
+    """Return the form of the language for each two words that follow each other in it."""
     forms: dict[tuple[str, str], str] = {}
     for declaration in declared_forms():
         words = zip(declaration.words, declaration.is_word, strict=True)
@@ -77,7 +77,7 @@ def _following() -> Mapping[tuple[str, str], str]:
 
 @cache
 def _beginnings() -> Mapping[str, str]:
-    """For the words that begin statements and may be names, the form."""
+    """Return the form for each word that begins statements and may be a name."""
     found: dict[str, str] = {}
     for statement in STATEMENTS.values():
         for form in statement.forms:
@@ -89,7 +89,7 @@ def _beginnings() -> Mapping[str, str]:
 
 @cache
 def _operators() -> Mapping[str, str]:
-    """For the words of operators, the form: one that begins with the word, if there is any."""
+    """Return the form for each word of operators: one that begins with the word, if there is any."""
     found: dict[str, str] = {}
     operators = [each for each in declared_forms() if each.node == "Operation"]
     for begins in (True, False):
@@ -195,7 +195,7 @@ def may_bind_more(context: CheckContext) -> bool:
 
 
 def begun_word(context: CheckContext, node: ast.Name) -> str | None:
-    """The one word of the language that a name at the end of a line may be the beginning of."""
+    """Return the only word of the language that begins with the name at the end of a line; ``None`` if there are others."""
     before = _word_before(context, node)
     found = {
         second for first, second in _candidates(before) if second.startswith(node.id) and second != node.id

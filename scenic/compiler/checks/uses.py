@@ -42,7 +42,7 @@ _HIDING: Final = frozenset(
 
 
 def check_uses(context: CheckContext) -> Iterator[Diagnostic]:
-    """SC205 to SC208 and SC312: bindings that are never read, that hide others, or that are replaced."""
+    """Report SC205 to SC208 and SC312 for bindings that are never read, that hide others, or that are replaced."""
     resolution = context.resolution
     for scope in resolution.scopes.values():
         local = scope.kind in (ScopeKind.FUNCTION, ScopeKind.BEHAVIOR, ScopeKind.MONITOR)
@@ -69,7 +69,7 @@ def check_uses(context: CheckContext) -> Iterator[Diagnostic]:
 
 
 def _monitors(context: CheckContext) -> Iterator[Diagnostic]:
-    """SC312: a monitor of a program, not of a library, that nothing names."""
+    """Report SC312 for a monitor of a program, not of a library, that nothing names."""
     resolution = context.resolution
     for binding in resolution.names.values():
         if binding.kinds != {BindingKind.MONITOR} or binding in resolution.read or _is_library(context):
@@ -85,7 +85,7 @@ def _monitors(context: CheckContext) -> Iterator[Diagnostic]:
 
 
 def _hidden(binding: Binding, context: CheckContext) -> Iterator[Diagnostic]:
-    """SC207."""
+    """Report SC207 for a binding that hides a name of the language."""
     declaration = NAMES[binding.name]
     if declaration.kind in _HIDEABLE or not binding.kinds <= _HIDING or binding.scope.kind is ScopeKind.CLASS:
         return
@@ -115,7 +115,7 @@ def _is_of_concern(binding: Binding, context: CheckContext) -> bool:
 
 
 def _unused(binding: Binding, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    """SC205, about a variable that is never read."""
+    """Report SC205 for a variable that is never read."""
     if (
         # The variables of behaviors and monitors can be read from outside, as attributes.
         (scope.kind is ScopeKind.FUNCTION or binding.name not in context.attributes)
@@ -187,7 +187,7 @@ def _has_no_effects(statement: Any, site: ast.alias, context: CheckContext) -> b
 
 
 def _removal(statement: Any, site: ast.alias, span: Span, context: CheckContext) -> Edit:
-    """The edit that removes one name of an import, or all of the statement with the only name."""
+    """Return the edit that removes one name of an import, or the whole statement if it has no other name."""
     names = statement.names
     if len(names) == 1:
         whole = context.source.span(statement)
@@ -232,7 +232,7 @@ def _names_read_first(statement: object) -> frozenset[str]:
 
 
 def _replaced(context: CheckContext, statements: Iterable[ast.stmt]) -> Iterator[Diagnostic]:
-    """SC208: two definitions of one name in one block, without a use between them."""
+    """Report SC208 for two definitions of one name in one block, without a use between them."""
     last: dict[str, Any] = {}
     for statement in statements:
         if not isinstance(statement, DEFINITIONS):

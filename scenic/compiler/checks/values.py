@@ -46,7 +46,7 @@ _MEMBERS_OF_OBJECTS: Final = frozenset(_PROPERTIES) | frozenset(attributes_of("O
 def _specifiers(
     node: scenic.New | scenic.Override, scope: Scope, context: CheckContext
 ) -> Iterator[Diagnostic]:
-    """``at 3``, ``with width "3"``."""
+    """Report mistakes such as ``at 3``, ``with width "3"``."""
     if may_be_meant(node, scope, context) or context.is_cut(node):
         return
     for specifier in node.specifiers:
@@ -65,7 +65,7 @@ def _specifiers(
 
 
 def _operation(node: scenic.Operation, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    """``distance to 3``, ``position @ 3``."""
+    """Report mistakes such as ``distance to 3``, ``position @ 3``."""
     if node.operator == "@" and not may_be_meant(node, scope, context):
         yield from _coordinates(node, context)
     if (
@@ -93,7 +93,7 @@ _BETWEEN_TWO: Final = frozenset({"altitude", "angle", "distance", "minimum dista
 
 
 def _conjunction(node: ast.BoolOp, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    """SC114: ``distance from a and b``."""
+    """Report SC114 for ``distance from a and b``."""
     match node:
         case ast.BoolOp(op=ast.And(), values=[scenic.Operation(operator=name, operands=operands), other]):
             pass
@@ -120,7 +120,7 @@ def _conjunction(node: ast.BoolOp, _scope: Scope, context: CheckContext) -> Iter
 
 
 def _coordinates(node: scenic.Operation, context: CheckContext) -> Iterator[Diagnostic]:
-    """SC404: ``place @ 3``, where ``place`` is a vector already."""
+    """Report SC404 for ``place @ 3``, where ``place`` is a vector already."""
     for operand in node.operands:
         kind = context.kind_of(operand)
         if operand is not None and kind is not None and kind.name in _NO_COORDINATES:
@@ -142,14 +142,14 @@ def _is_none(value: ast.expr | None) -> bool:
 
 
 def _property(node: scenic.PropertyDef, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    """``width: "3"``, ``size: self.lenth``."""
+    """Report mistakes such as ``width: "3"``, ``size: self.lenth``."""
     declared = _PROPERTIES.get(node.name)
     if declared is not None and "additive" not in node.attributes:
         yield from wrong_kinds(f"`{node.name}`", declared.types, node.value, context)
 
 
 def _assign(node: ast.Assign, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    """``workspace = room``, ``ego = 3``."""
+    """Report mistakes such as ``workspace = room``, ``ego = 3``."""
     kind = context.kind_of(node.value)
     if isinstance(node.value, ast.Tuple) and (
         len(node.value.elts) < 2 or any(isinstance(part, scenic.New) for part in node.value.elts)
@@ -191,7 +191,7 @@ _NOT_CALLED: Final = frozenset(
 
 
 def _call(node: ast.Call, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    """SC404: ``angle from ego (3, 4)``, where ``to`` is missing, ``3 (x)``."""
+    """Report SC404 for ``angle from ego (3, 4)``, where ``to`` is missing, ``3 (x)``."""
     kind = context.kind_of(node.func)
     if kind is None or kind.name not in _NOT_CALLED or may_be_meant(node, scope, context):
         return
@@ -217,7 +217,7 @@ _MEASURES: Final = frozenset({"distance", "angle", "altitude", "relative heading
 
 
 def _workspace(target: ast.Name, context: CheckContext) -> Iterator[Diagnostic]:
-    """``workspce = Workspace(region)``."""
+    """Report mistakes such as ``workspce = Workspace(region)``."""
     if distance(target.id, "workspace", limit=2) in (1, 2):
         yield context.warning(
             "SC307",
@@ -229,7 +229,7 @@ def _workspace(target: ast.Name, context: CheckContext) -> Iterator[Diagnostic]:
 
 
 def _mutate(node: scenic.Mutate, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    """``mutate room``."""
+    """Report mistakes such as ``mutate room``."""
     for target in node.targets:
         kind = context.kind_of(target)
         if kind is not None and kind.name not in INSTANCES:
@@ -246,7 +246,7 @@ _DEFINED: Final = frozenset({"behavior", "class", "function", "monitor", "scenar
 
 
 def _new(node: scenic.New, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    """``new table`` where ``table`` is an object."""
+    """Report mistakes such as ``new table`` where ``table`` is an object."""
     yield from _specifiers(node, scope, context)
     kind = context.kind_of(node.cls)
     if kind is not None and (kind.name not in _DEFINED or context.provided(node.cls) is not None):
@@ -259,7 +259,7 @@ def _new(node: scenic.New, scope: Scope, context: CheckContext) -> Iterator[Diag
 
 
 def _compare(node: ast.Compare, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    """``ego.position > 3``."""
+    """Report mistakes such as ``ego.position > 3``."""
     if may_be_meant(node, scope, context):
         return
     sides = [node.left, *node.comparators]
@@ -291,7 +291,7 @@ def _compare(node: ast.Compare, scope: Scope, context: CheckContext) -> Iterator
 def _contained(
     node: ast.Compare, item: ValueKind | None, container: ValueKind | None, context: CheckContext
 ) -> Iterator[Diagnostic]:
-    """``ego in 3``, ``3 in room``."""
+    """Report mistakes such as ``ego in 3``, ``3 in room``."""
     if container is not None and container.name in _WITHOUT_ITEMS:
         yield context.error(
             "SC404",
@@ -314,7 +314,7 @@ def _contained(
 
 
 def _arithmetic(node: ast.BinOp, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    """``ego.width + "3"``, ``ego.position + 3``."""
+    """Report mistakes such as ``ego.width + "3"``, ``ego.position + 3``."""
     yield from _counted(node, scope, context)
     if not isinstance(node.op, ast.Add | ast.Sub | ast.Div):
         return
@@ -342,7 +342,7 @@ def _arithmetic(node: ast.BinOp, scope: Scope, context: CheckContext) -> Iterato
 
 
 def _counted(node: ast.BinOp, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    """SC404: ``2 * range(0, 3)``."""
+    """Report SC404 for ``2 * range(0, 3)``."""
     for side in (node.left, node.right):
         if not isinstance(side, ast.Call) or context.provided(side.func) != "range":
             continue
@@ -366,7 +366,7 @@ _SIGNS: Final = {ast.Add: "+", ast.Sub: "-", ast.Div: "/"}
 
 
 def _subscript(node: ast.Subscript, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    """``Uniform[1, 2]``, ``ego.width[0]``."""
+    """Report mistakes such as ``Uniform[1, 2]``, ``ego.width[0]``."""
     key = node.slice.value if isinstance(node.slice, ast.Constant) else None
     if (
         isinstance(key, str)
@@ -390,7 +390,7 @@ def _subscript(node: ast.Subscript, scope: Scope, context: CheckContext) -> Iter
 
 
 def _loop(node: ast.For, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    """``for i in 3``."""
+    """Report mistakes such as ``for i in 3``."""
     kind = context.kind_of(node.iter)
     if kind is None or kind.name not in _WITHOUT_ITEMS or may_be_meant(node, scope, context):
         return
@@ -414,7 +414,7 @@ def _is_unordered(kind: ValueKind) -> bool:
 
 
 def _attribute(node: ast.Attribute, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    """SC214: ``ego.positon``, ``Vector(1, 2).lenght()``."""
+    """Report SC214 for ``ego.positon``, ``Vector(1, 2).lenght()``."""
     name = node.attr
     if isinstance(node.ctx, ast.Store) and context.provided(node.value) == "globalParameters":
         yield context.error(
@@ -459,7 +459,7 @@ def _attribute(node: ast.Attribute, scope: Scope, context: CheckContext) -> Iter
 def _unknown_attribute(
     node: ast.Attribute, kind: ValueKind, known: Collection[str], context: CheckContext
 ) -> Iterator[Diagnostic]:
-    """An attribute that is none of the known ones."""
+    """Report an attribute that is not among the known ones."""
     name = node.attr
     similar_name = nearest(name, known)
     if similar_name is None and kind.name in INSTANCES:
@@ -505,7 +505,7 @@ def _has_python(context: CheckContext) -> bool:
 
 
 def _of_agent(node: ast.Attribute, context: CheckContext) -> Iterator[Diagnostic]:
-    """SC214: ``self.spped`` in a behavior or monitor, whose agent may be of any class."""
+    """Report SC214 for ``self.spped`` in a behavior or monitor, whose agent may be of any class."""
     binding = context.binding(node.value) if isinstance(node.value, ast.Name) else None
     if binding is None or binding.scope.kind not in (ScopeKind.BEHAVIOR, ScopeKind.MONITOR):
         return
@@ -527,7 +527,7 @@ def _of_agent(node: ast.Attribute, context: CheckContext) -> Iterator[Diagnostic
 
 
 def _parameter(name: str, place: Span, context: CheckContext) -> Iterator[Diagnostic]:
-    """SC214: ``globalParameters.sped``, ``globalParameters['sped']``."""
+    """Report SC214 for ``globalParameters.sped``, ``globalParameters['sped']``."""
     names = context.parameters
     similar_name = nearest(name, names)
     if name in names or similar_name is None:
@@ -551,7 +551,7 @@ def _end(node: ast.Attribute, context: CheckContext) -> Span:
 
 
 def _class(node: ast.ClassDef, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    """SC214: ``size: self.lenth * 2``, in the defaults of a class."""
+    """Report SC214 for ``size: self.lenth * 2``, in the defaults of a class."""
     defaults = [item.value for item in node.body if isinstance(item, scenic.PropertyDef)]
     cls = context.class_at(node) if defaults else None
     members = None if cls is None or context.writes_any_attribute else cls.names

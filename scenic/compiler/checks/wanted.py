@@ -19,7 +19,7 @@ __all__ = ["is_attempt", "may_be_meant", "wrong_kinds"]
 def wrong_kinds(
     title: str | Callable[[], str], types: Sequence[Type], value: ast.expr | None, context: CheckContext
 ) -> Iterable[Diagnostic]:
-    """SC404: a value that certainly does not do where some types are declared. ``title`` is quoted."""
+    """Report SC404 for a value that certainly is of none of the declared types. ``title`` is quoted."""
     kind = context.kind_of(value)
     is_wrong = kind is not None and not accepts(types, kind)
     if value is None or not (is_wrong or types[0] is COLOR):
@@ -87,7 +87,7 @@ _HEXADECIMAL: Final = re.compile(r"#([0-9a-fA-F]{2})([0-9a-fA-F]{2})([0-9a-fA-F]
 
 
 def _colour_name(title: str, value: ast.expr, name: str, context: CheckContext) -> Diagnostic:
-    """SC404: ``with color "red"``, ``with color "#ff0000"``."""
+    """Return SC404 for ``with color "red"``, ``with color "#ff0000"``."""
     parts = _HEXADECIMAL.fullmatch(name)
     replacement = _COLOURS.get(name.lower()) if parts is None else None
     if parts is not None:

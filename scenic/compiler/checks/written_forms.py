@@ -11,7 +11,7 @@ __all__ = ["check_written_forms"]
 
 
 def check_written_forms(context: CheckContext) -> Iterator[Diagnostic]:
-    """SC315, as information: the first use of each function that the language writes in words."""
+    """Report SC315, as information, at the first use of each function that the language writes in words."""
     for name, uses in context.resolution.uses.items():
         declaration = NAMES.get(name)
         if declaration is None or declaration.syntax is None:

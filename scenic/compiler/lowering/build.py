@@ -29,7 +29,7 @@ _Node = TypeVar("_Node", bound=ast.AST)
 
 
 def at(node: _Node, origin: ast.AST) -> _Node:
-    """``node``, placed where ``origin`` stands."""
+    """Give ``node`` the place of ``origin`` and return it."""
     place: Any = origin
     target: Any = node
     target.lineno = place.lineno
@@ -115,7 +115,7 @@ def prelude_call(
 
 
 def parameters(names: Sequence[ast.arg]) -> ast.arguments:
-    """Plain positional parameters."""
+    """Return plain positional parameters."""
     return ast.arguments(
         posonlyargs=[], args=list(names), vararg=None, kwonlyargs=[], kw_defaults=[], kwarg=None, defaults=[]
     )
@@ -134,7 +134,7 @@ def function(
     decorator: str,
     origin: ast.AST,
 ) -> ast.FunctionDef:
-    """``@__scenic__.decorator`` on ``def identifier(args): body``."""
+    """Return ``@__scenic__.decorator`` on ``def identifier(args): body``."""
     mark = prelude(decorator, origin)
     start_of(mark, origin)
     fields: dict[str, Any] = {
@@ -158,13 +158,13 @@ def statement(value: ast.expr, origin: ast.AST) -> ast.Expr:
 def instance_attribute(
     instance: str, identifier: str, origin: ast.AST, context: ast.expr_context | None = None
 ) -> ast.Attribute:
-    """``instance.identifier``: a local name of a scenario."""
+    """Return ``instance.identifier``, a local name of a scenario."""
     owner = start_of(ast.Name(instance, ast.Load()), origin)
     return at(ast.Attribute(owner, identifier, context or ast.Load()), origin)
 
 
 def store_on_instance(instance: str, identifier: str, origin: ast.AST) -> ast.Assign:
-    """``instance.identifier = identifier``, at the beginning of ``origin``."""
+    """Return ``instance.identifier = identifier``, at the beginning of ``origin``."""
     target = start_of(instance_attribute(instance, identifier, origin, ast.Store()), origin)
     value = start_of(ast.Name(identifier, ast.Load()), origin)
     return start_of(ast.Assign([target], value), origin)

@@ -51,7 +51,7 @@ class Lowerer(Protocol):
         """Return a node with its fields lowered."""
 
     def handlers(self, nodes: Sequence[ast.ExceptHandler]) -> list[ast.ExceptHandler]:
-        """Lowered ``except`` clauses."""
+        """Lower ``except`` clauses."""
 
     def specifier(self, node: scenic.SpecifierPhrase) -> ast.expr:
         """Return a lowered specifier."""
@@ -88,7 +88,7 @@ class Blocks:
 
     @contextmanager
     def inside(self, frame: "set[str] | bool | None") -> Iterator[None]:
-        """Within a frame."""
+        """Enter a frame for the time of the context."""
         self.frames.append(frame)
         try:
             yield
@@ -97,7 +97,7 @@ class Blocks:
 
     @contextmanager
     def running(self, instance: str) -> Iterator[None]:
-        """Within a definition."""
+        """Enter a definition for the time of the context."""
         self.instances.append(instance)
         try:
             with self.inside(False):
@@ -123,7 +123,7 @@ def definition(
     arguments: ast.arguments,
     body: Sequence[ast.stmt],
 ) -> ast.FunctionDef:
-    """``@__scenic__.decorator(*parts)`` on a function."""
+    """Return ``@__scenic__.decorator(*parts)`` on a function."""
     mark = prelude_call(decorator, parts, node)
     start_of(mark, node)
     return _function(node.name, arguments, body, node, [mark])
@@ -150,7 +150,7 @@ def _function(
 
 
 def guards(lowerer: Lowerer, node: Any, extra: Sequence[str]) -> list[ast.expr]:
-    """Preconditions and invariants of a definition, two tuples of functions of the instance (and the agent)."""
+    """Return the preconditions and invariants of a definition, two tuples of functions of the instance (and the agent)."""
     names = [(identifier, node) for identifier in (lowerer.blocks.instance, *extra)]
     kinds: dict[str, list[ast.expr]] = {"precondition": [], "invariant": []}
     for guard in node.guards:

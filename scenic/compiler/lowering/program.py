@@ -201,7 +201,7 @@ class _Program:
         return lowered
 
     def _starred_call(self, node: ast.Call) -> ast.expr:
-        """``f(a, *b, k=c)``: the runtime spreads ``b``, which may be random and is then known only in a sample."""
+        """Lower ``f(a, *b, k=c)``: the runtime spreads ``b``, which may be random and is then known only in a sample."""
         parts: list[ast.expr] = []
         for arg in node.args:
             is_starred = isinstance(arg, ast.Starred)

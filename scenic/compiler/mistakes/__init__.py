@@ -130,12 +130,12 @@ RULES: Final[tuple[Rule, ...]] = (
 
 
 def instead_of_failure(at: Situation) -> SyntaxProblem | None:
-    """The message of a rule that knows better than the parser why a statement is no assignment, ``None`` if none does."""
+    """Return the message of a rule that explains better than the parser why a statement is not an assignment; ``None`` if none does."""
     return dialects.setting_of_property(at)
 
 
 def explain(at: Situation) -> SyntaxProblem | None:
-    """The message of the first rule that knows the mistake, ``None`` if none does."""
+    """Return the message of the first rule that explains the mistake, ``None`` if none does."""
     for rule in RULES:
         problem = rule(at)
         if problem is not None:

@@ -33,7 +33,7 @@ _HEADERS: Final = {
 
 
 def missing_colon(at: Situation) -> SyntaxProblem | None:
-    """``if x``, ``def f()``, ``while x {``."""
+    """Explain a header without its colon, as in ``if x``, ``def f()``, ``while x {``."""
     first = at.word(at.first)
     if not at.expects(":") or first not in _HEADERS or at.opener(at.token) is not None or _has_colon(at):
         return None
@@ -92,7 +92,7 @@ def _colon(at: Situation, message: str, changes: list[Change]) -> SyntaxProblem:
 
 
 def header_without_colon(at: Situation) -> SyntaxProblem | None:
-    """``setup``, ``compose`` and the like before a block; without the colon they are names."""
+    """Explain ``setup``, ``compose`` and the like before a block; without the colon they are names."""
     if at.word(at.first) not in ("setup", "compose") or at.end != at.first + 1:
         return None
     return _colon(at.elsewhere(at.start, at.end), f"the colon after `{at.word(at.first)}` is missing", [])
@@ -104,7 +104,7 @@ _LEAST: Final = 3
 
 
 def unfinished_header(at: Situation) -> SyntaxProblem | None:
-    """``behavior``, ``beha`` before the lines of a block: a header of which one word is typed so far."""
+    """Explain ``behavior``, ``beha`` before the lines of a block: a header of which one word is typed so far."""
     word = at.word(at.first)
     if at.end != at.first + 1 or not at.is_name(at.first) or word in ("setup", "compose"):
         return None
@@ -148,7 +148,7 @@ def missing_block(at: Situation) -> SyntaxProblem | None:
 
 
 def unexpected_indent(at: Situation) -> SyntaxProblem | None:
-    """A line that is indented more than it can be."""
+    """Explain a line that is indented more than it can be."""
     if at.token >= len(at.tokens.kinds) or at.tokens.kinds[at.token] != INDENT:
         return None
     return at.problem("SC102", at.here(), "this line is indented more than it can be", "indent it less")
@@ -166,7 +166,7 @@ _BEGINNINGS: Final = {
 
 
 def clause_without_beginning(at: Situation) -> SyntaxProblem | None:
-    """`else` without `if`, `case` without `match`."""
+    """Explain `else` without `if`, `case` without `match`."""
     word = at.word(at.first)
     if word not in _BEGINNINGS or at.first != at.start:
         return None
@@ -201,7 +201,7 @@ def clause_without_beginning(at: Situation) -> SyntaxProblem | None:
 
 
 def _clause_before(at: Situation) -> int | None:
-    """The beginning of the clause before this one, if it is one after which this one cannot come."""
+    """Return the beginning of the previous clause, if this clause cannot come after it."""
     kinds = at.tokens.kinds
     index = at.first - 1
     if index < 0 or kinds[index] != DEDENT:
@@ -227,7 +227,7 @@ _CLAUSES: Final = {
 
 
 def try_alone(at: Situation) -> SyntaxProblem | None:
-    """`try` without any clause."""
+    """Explain `try` without any clause."""
     if not at.expects("`except`, `finally` or `interrupt when`"):
         return None
     place = at.trials.line(at.start)
@@ -264,7 +264,7 @@ def try_alone(at: Situation) -> SyntaxProblem | None:
 
 
 def decorator_alone(at: Situation) -> SyntaxProblem | None:
-    """A decorator before what it cannot decorate."""
+    """Explain a decorator before what it cannot decorate."""
     if at.token != at.first or at.tokens.texts[at.start] != "@" or HARD_KEYWORDS["def"] not in at.expected:
         return None
     if at.found and any(word.startswith(at.found) for word in ("async", "class", "def")):

@@ -33,7 +33,7 @@ _OWN_SPECIFIERS: Final = {
 
 
 def continuation(at: Situation) -> SyntaxProblem | None:
-    """``new Object at x,`` and on the next line, without indentation, ``with width 2``."""
+    """Explain a line of specifiers that is not indented: ``new Object at x,`` and on the next line ``with width 2``."""
     kinds, previous = at.tokens.kinds, at.first - 1
     while previous > 0 and kinds[previous] in (NEWLINE, DEDENT):
         previous -= 1
@@ -56,7 +56,7 @@ def continuation(at: Situation) -> SyntaxProblem | None:
 
 
 def setting_of_property(at: Situation) -> SyntaxProblem | None:
-    """``new Object at x, width 2``, ``heading 30 deg``, ``width=2``, ``speed: 3``."""
+    """Explain a property that is set without `with`, or by another sign, as in ``new Object at x, width 2``, ``heading 30 deg``, ``width=2``, ``speed: 3``."""
     sign = at.found in ("=", ":")
     first = at.token - 1
     if not at.is_name(first) or at.tokens.kinds[first] in SPECIFIER_KINDS:
@@ -89,7 +89,7 @@ _SIDES: Final = {"front": ("ahead", "of"), "back": ("behind",), "rear": ("behind
 
 
 def side_of_object(at: Situation) -> SyntaxProblem | None:
-    """``new Object in front of ego by 3``."""
+    """Explain a side of an object in the words of other languages, as in ``new Object in front of ego by 3``."""
     for first in range(at.token, at.first, -1):
         side = _SIDES.get(at.word(first))
         if side is None or at.word(first - 1) not in ("in", "at", "on") or at.word(first + 1) != "of":
@@ -109,7 +109,7 @@ def side_of_object(at: Situation) -> SyntaxProblem | None:
 
 
 def number_between(at: Situation) -> SyntaxProblem | None:
-    """``(between 0 and 5, 0)``, ``random 0 to 5``."""
+    """Explain a range of numbers in words, as in ``(between 0 and 5, 0)``, ``random 0 to 5``."""
     first = at.token - 1
     if at.word(first) not in ("between", "random") or at.tokens.kinds[at.token] != NUMBER:
         return None
@@ -130,7 +130,7 @@ def number_between(at: Situation) -> SyntaxProblem | None:
 
 
 def duration_of_action(at: Situation) -> SyntaxProblem | None:
-    """``take X for 3 seconds``, ``take X until c``."""
+    """Explain a duration of an action, as in ``take X for 3 seconds``, ``take X until c``."""
     if at.word(at.first) != "take" or at.found not in ("for", "until", "while"):
         return None
     action = at.words(at.first + 1, at.token)
@@ -146,7 +146,7 @@ def duration_of_action(at: Situation) -> SyntaxProblem | None:
 
 
 def bound_of_condition(at: Situation) -> SyntaxProblem | None:
-    """``require always c for 5 seconds``, ``require eventually within 5 seconds c``."""
+    """Explain a duration of a temporal condition, as in ``require always c for 5 seconds``, ``require eventually within 5 seconds c``."""
     first = at.word(at.first)
     temporal = any(at.word(index) in _TEMPORAL for index in range(at.first + 1, at.token))
     if first != "require" or not temporal:
@@ -184,7 +184,7 @@ _HEADERS: Final = frozenset(
 
 
 def braces(at: Situation) -> SyntaxProblem | None:
-    """``behavior Go() {``."""
+    """Explain a block in braces, as in ``behavior Go() {``."""
     if at.found != "{" or at.word(at.first) not in _HEADERS:
         return None
     closer = at.end - 1

@@ -62,7 +62,7 @@ _TYPES: Final = frozenset(
 
 
 def else_if(at: Situation) -> SyntaxProblem | None:
-    """``else if x:``."""
+    """Explain `else if` instead of `elif`, as in ``else if x:``."""
     if at.found != "if" or at.before != "else":
         return None
     change = Change(at.token - 1, at.token + 1, ("elif",))
@@ -76,7 +76,7 @@ def else_if(at: Situation) -> SyntaxProblem | None:
 
 
 def operator(at: Situation) -> SyntaxProblem | None:
-    """``a && b``, ``a => b``, ``a === b``."""
+    """Explain an operator of another language, as in ``a && b``, ``a => b``, ``a === b``."""
     for first in (at.token - 1, at.token):
         replacement = _PAIRS.get((at.word(first), at.word(first + 1)))
         if replacement is None or not at.adjacent(first):
@@ -105,7 +105,7 @@ _UNITS: Final = {
 
 
 def unit(at: Situation) -> SyntaxProblem | None:
-    """``10 km/h``, ``3 m``."""
+    """Explain a number with a unit, as in ``10 km/h``, ``3 m``."""
     if at.token == 0 or at.tokens.kinds[at.token - 1] != NUMBER or not at.is_plain_name(at.token):
         return None
     rate = f"{at.found}/{at.word(at.token + 2)}" if at.word(at.token + 1) == "/" else ""
@@ -121,7 +121,7 @@ def unit(at: Situation) -> SyntaxProblem | None:
 
 
 def comment(at: Situation) -> SyntaxProblem | None:
-    """``x = 3 // a note``, and lines that start with ``//``."""
+    """Explain a comment that begins with `//`, as in ``x = 3 // a note``, or a line that starts with ``//``."""
     first = next((i for i in range(at.first, min(at.token, at.end - 1) + 1) if at.word(i) == "//"), None)
     if first is None or not (at.word(first + 1) or first == at.first):
         return None
@@ -137,7 +137,7 @@ def comment(at: Situation) -> SyntaxProblem | None:
 
 
 def block_comment(at: Situation) -> SyntaxProblem | None:
-    """``x = 3 /* a note */``."""
+    """Explain a comment between `/*` and `*/`, as in ``x = 3 /* a note */``."""
     first = next(
         (
             index
@@ -161,7 +161,7 @@ def block_comment(at: Situation) -> SyntaxProblem | None:
 
 
 def increment(at: Situation) -> SyntaxProblem | None:
-    """``x++``."""
+    """Explain an operator that increments, as in ``x++``."""
     first = at.token - 2
     mark = at.before
     if not at.at_end() or mark not in ("+", "-") or at.word(first) != mark or not at.adjacent(first):
@@ -177,7 +177,7 @@ def increment(at: Situation) -> SyntaxProblem | None:
 
 
 def first_word(at: Situation) -> SyntaxProblem | None:
-    """``function f():``, ``switch x:``, ``throw E()``."""
+    """Explain a statement that begins with a word of another language, as in ``function f():``, ``switch x:``, ``throw E()``."""
     word = at.word(at.first)
     keywords = _FIRST_WORDS.get(word.lower())
     if keywords is None or at.token > at.first + 2:
@@ -198,7 +198,7 @@ def first_word(at: Situation) -> SyntaxProblem | None:
 
 
 def declaration(at: Situation) -> SyntaxProblem | None:
-    """``var x = 3``, ``float y = 2``."""
+    """Explain a declaration of a variable with its type, as in ``var x = 3``, ``float y = 2``."""
     declares = at.token == at.first + 1 and at.word(at.token + 1) == "="
     if at.word(at.first) not in _TYPES or not (declares or at.found == "="):
         return None
@@ -216,7 +216,7 @@ def declaration(at: Situation) -> SyntaxProblem | None:
 
 
 def import_from(at: Situation) -> SyntaxProblem | None:
-    """``import x from y``."""
+    """Explain an import with the module at its end, as in ``import x from y``."""
     if at.word(at.first) != "import" or at.found != "from":
         return None
     names, module = at.words(at.first + 1, at.token), at.words(at.token + 1, at.end)

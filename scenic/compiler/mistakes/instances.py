@@ -30,7 +30,7 @@ _MOST_CLASSES: Final = 6
 
 
 def _specifier_at(at: Situation, index: int) -> str:
-    """The words that a specifier starts with."""
+    """Return the words that a specifier starts with."""
     words = [at.word(index)]
     for word in (at.word(index + 1), at.word(index + 2)):
         if word not in ("of", "in", "by", "along", "visible", "facing", "toward", "away", "directly"):
@@ -51,7 +51,7 @@ def _classes(at: Situation) -> list[int]:
 
 
 def missing_new(at: Situation) -> SyntaxProblem | None:
-    """``Object facing x``, ``ego = Car with width 2``."""
+    """Explain a class without `new` before it, as in ``Object facing x``, ``ego = Car with width 2``."""
     attempts = 0
     for index in range(min(at.token, at.end - 1), at.first - 1, -1):
         if not at.is_class_name(index) or at.word(index - 1) in ("new", "class"):
@@ -94,7 +94,7 @@ def missing_new(at: Situation) -> SyntaxProblem | None:
 
 
 def missing_comma_between_specifiers(at: Situation) -> SyntaxProblem | None:
-    """``new Object at x facing y``."""
+    """Explain a missing comma between specifiers, as in ``new Object at x facing y``."""
     if at.at_end() or at.tokens.kinds[at.token] not in SPECIFIER_KINDS or at.before == ",":
         return None
     makers = [i for i in range(at.first, at.token) if at.word(i) in ("new", "override")]
@@ -115,7 +115,7 @@ def missing_comma_between_specifiers(at: Situation) -> SyntaxProblem | None:
 
 
 def missing_comma_between_lines(at: Situation) -> SyntaxProblem | None:
-    """A line of specifiers that does not end with a comma, although another follows."""
+    """Explain a line of specifiers that does not end with a comma, although another follows."""
     if at.token != at.first or at.at_end() or at.tokens.kinds[at.token] not in SPECIFIER_KINDS:
         return None
     if DEDENT not in at.expected or at.token < 2:
@@ -131,7 +131,7 @@ def missing_comma_between_lines(at: Situation) -> SyntaxProblem | None:
 
 
 def comma_after_class(at: Situation) -> SyntaxProblem | None:
-    """``new Object, at x`` on one line."""
+    """Explain a comma between the class and the specifiers of one line, as in ``new Object, at x``."""
     index = at.token - 1
     while index > at.first and at.word(index) != ",":
         index -= 1
@@ -151,7 +151,7 @@ def comma_after_class(at: Situation) -> SyntaxProblem | None:
 
 
 def dotted_class(at: Situation) -> SyntaxProblem | None:
-    """``new module.Class``."""
+    """Explain a class after `new` with a dot in its name, as in ``new module.Class``."""
     if at.found != "." or at.word(at.token - 2) != "new" or not at.is_name(at.token + 1):
         return None
     last = at.token + 1
@@ -166,7 +166,7 @@ def dotted_class(at: Situation) -> SyntaxProblem | None:
 
 
 def _dotted_without_new(at: Situation, index: int) -> SyntaxProblem | None:
-    """``module.Class facing x``."""
+    """Explain a class of a module without `new`, as in ``module.Class facing x``."""
     if index != at.token - 1 or at.tokens.kinds[at.token] not in SPECIFIER_KINDS:
         return None
     first = index
@@ -182,7 +182,7 @@ def _dotted_without_new(at: Situation, index: int) -> SyntaxProblem | None:
 
 
 def missing_class(at: Situation) -> SyntaxProblem | None:
-    """``new at x``."""
+    """Explain a missing class after `new`, as in ``new at x``."""
     if at.before != "new" or not (at.at_end() or at.tokens.kinds[at.token] in SPECIFIER_KINDS):
         return None
     rest = "" if at.at_end() else f" {_specifier_at(at, at.token)} ..."
@@ -192,7 +192,7 @@ def missing_class(at: Situation) -> SyntaxProblem | None:
 
 
 def foreign_clause(at: Situation) -> SyntaxProblem | None:
-    """``new C at x by 3``: a word that the specifier before does not take."""
+    """Explain a word that the specifier before it does not take, as in ``new C at x by 3``."""
     if at.found not in ("by", "from", "for", "to", "of") or at.before == "with":
         return None
     for index in range(at.token - 1, at.first - 1, -1):
@@ -227,7 +227,7 @@ _NAMES: Final = sorted(SPECIFIERS, key=lambda name: -len(name.split()))
 
 
 def call_of_class(at: Situation) -> SyntaxProblem | None:
-    """``new Object(width=2)``."""
+    """Explain a class after `new` that is called, as in ``new Object(width=2)``."""
     if at.found != "(" or at.word(at.token - 2) != "new":
         return None
     name = at.before
@@ -256,7 +256,7 @@ def call_of_class(at: Situation) -> SyntaxProblem | None:
 
 
 def new_as_operand(at: Situation) -> SyntaxProblem | None:
-    """``new Object ** 2``: an operator that cannot be applied to `new`."""
+    """Explain an operator that cannot be applied to `new`, as in ``new Object ** 2``."""
     if at.word(at.token - 2) != "new" or at.found not in ("**", "["):
         return None
     changes = [insertion(at.token - 2, "("), insertion(at.token, ")")]
@@ -270,7 +270,7 @@ def new_as_operand(at: Situation) -> SyntaxProblem | None:
 
 
 def equals_in_specifier(at: Situation) -> SyntaxProblem | None:
-    """``with width = 2``, ``facing: 3``."""
+    """Explain a sign between a specifier and its value, as in ``with width = 2``, ``facing: 3``."""
     if at.found not in ("=", ":"):
         return None
     first = at.token - 2 if at.word(at.token - 2) == "with" else at.token - 1
@@ -318,7 +318,7 @@ _VAGUE: Final = frozenset({"next", "close", "beside", "near"})
 
 
 def another_place(at: Situation) -> SyntaxProblem | None:
-    """``new C front of x``, ``new C next to x``."""
+    """Explain a place that no specifier names so, as in ``new C front of x``, ``new C next to x``."""
     for first in (at.token, at.token - 1):
         words = next(
             (each for each in _PLACES if each == tuple(at.word(first + i) for i in range(len(each)))), None
@@ -352,7 +352,7 @@ def another_place(at: Situation) -> SyntaxProblem | None:
 
 
 def unbracketed_coordinates(at: Situation) -> SyntaxProblem | None:
-    """``new Object at 1 2``."""
+    """Explain coordinates without parentheses, as in ``new Object at 1 2``."""
     kinds = at.tokens.kinds
     if kinds[at.token] != NUMBER or kinds[at.token - 1] != NUMBER:
         return None

@@ -71,7 +71,7 @@ _TEMPORAL: Final = tuple(form.words[0] for form in TEMPORAL_FORMS if form.fixity
 
 
 def loose_prefix_operator(at: Situation) -> SyntaxProblem | None:
-    """``5 + distance to a``: a prefix operator is looser than the operator before it."""
+    """Explain a prefix operator that is looser than the operator before it, as in ``5 + distance to a``."""
     first = at.token - 1
     follows = (at.before, at.found) in PREFIX_STARTS
     if not follows and at.before in ("follow", "visible") and at.starts_operand(at.token):
@@ -110,7 +110,7 @@ def _end_of_operand(at: Situation) -> int:
 
 
 def loose_operand(at: Situation) -> SyntaxProblem | None:
-    """``a + not b``, ``x == lambda: 3``, ``1 + yield x``."""
+    """Explain an operand that is looser than the operator before it, as in ``a + not b``, ``x == lambda: 3``, ``1 + yield x``."""
     if at.before == "not" and at.expects("visible") and at.starts_operand(at.token):
         # The operator `not visible` could have stood here.
         first = at.token - 1
@@ -144,7 +144,7 @@ def loose_operand(at: Situation) -> SyntaxProblem | None:
 
 
 def after_degrees(at: Situation) -> SyntaxProblem | None:
-    """``a deg ** 2``, ``a deg.x``: nothing tight can follow `deg`."""
+    """Explain an operator after `deg` that is tighter than it, as in ``a deg ** 2``, ``a deg.x``."""
     if at.before != "deg" or at.found not in ("**", ".", "(", "[") or at.token - 2 < at.first:
         return None
     operand = at.token - 2
@@ -166,7 +166,7 @@ def _requirement(at: Situation) -> bool:
 
 
 def temporal_elsewhere(at: Situation) -> SyntaxProblem | None:
-    """``x = always y``, ``if a until b:``."""
+    """Explain a temporal operator outside a requirement, as in ``x = always y``, ``if a until b:``."""
     if _requirement(at):
         return None
     if at.before in _TEMPORAL and at.starts_operand(at.token):
@@ -195,7 +195,7 @@ _CONTEXT: Final = frozenset(
 
 
 def chained_temporal(at: Situation) -> SyntaxProblem | None:
-    """``require a until b until c``."""
+    """Explain a temporal operator with three operands, as in ``require a until b until c``."""
     if not _requirement(at) or at.found not in ("until", "implies"):
         return None
     earlier = [index for index in range(at.first, at.token) if at.word(index) == at.found]
@@ -212,7 +212,7 @@ def chained_temporal(at: Situation) -> SyntaxProblem | None:
 
 
 def temporal_after_operand(at: Situation) -> SyntaxProblem | None:
-    """``require a always b``."""
+    """Explain a missing operator before a temporal one, as in ``require a always b``."""
     if not _requirement(at) or at.found not in _TEMPORAL or not at.helps(insertion(at.token, "and")):
         return None
     return at.problem(
@@ -224,7 +224,7 @@ def temporal_after_operand(at: Situation) -> SyntaxProblem | None:
 
 
 def temporal_operand(at: Situation) -> SyntaxProblem | None:
-    """``require 3 < always x``: a temporal operator where an ordinary expression has to stand."""
+    """Explain a temporal operator where an ordinary expression has to stand, as in ``require 3 < always x``."""
     if not _requirement(at):
         return None
     if at.before in _TEMPORAL and at.starts_operand(at.token):

@@ -41,7 +41,7 @@ _KEYWORD_KINDS: Final = frozenset(HARD_KEYWORDS.values())
 
 
 def assignment_in_condition(at: Situation) -> SyntaxProblem | None:
-    """``if x = 3:``, ``require a.b = 3``, ``f(a.b=3)``, ``{a = 3}``."""
+    """Explain `=` where `==` or `:` is meant, as in ``if x = 3:``, ``require a.b = 3``, ``f(a.b=3)``, ``{a = 3}``."""
     if at.found != "=" or at.expects("="):
         return None
     if at.word(at.first) in ("global", "nonlocal") and at.token > at.first + 1:
@@ -88,7 +88,7 @@ def assignment_in_condition(at: Situation) -> SyntaxProblem | None:
 
 
 def misplaced_walrus(at: Situation) -> SyntaxProblem | None:
-    """``x := 3`` as a statement, ``a.b := 3``."""
+    """Explain `:=` where it cannot stand, as in ``x := 3`` as a statement, or ``a.b := 3``."""
     if at.found != ":=":
         return None
     change = Change(at.token, at.token + 1, ("=",))
@@ -112,7 +112,7 @@ def misplaced_walrus(at: Situation) -> SyntaxProblem | None:
 
 
 def missing_comma(at: Situation) -> SyntaxProblem | None:
-    """``[1 2]``, ``f(a b)``, ``import a b``."""
+    """Explain a missing comma in a list, as in ``[1 2]``, ``f(a b)``, ``import a b``."""
     if not at.starts_operand(at.token) or at.token == at.first:
         return None
     opener = at.opener(at.token)
@@ -135,7 +135,7 @@ def missing_comma(at: Situation) -> SyntaxProblem | None:
 
 
 def missing_comma_of_import(at: Situation) -> SyntaxProblem | None:
-    """``import a b``."""
+    """Explain a missing comma between imported modules, as in ``import a b``."""
     if at.word(at.first) not in ("import", "from") or not at.expects("as") or at.opener(at.token) is not None:
         return None
     if not at.is_name(at.token) or not at.repairs(insertion(at.token, ",")):
@@ -156,7 +156,7 @@ def _shown(at: Situation) -> str:
 
 
 def two_commas(at: Situation) -> SyntaxProblem | None:
-    """``f(a,, b)``."""
+    """Explain two commas in a row, as in ``f(a,, b)``."""
     if at.found != "," or at.before != ",":
         return None
     change = Change(at.token, at.token + 1, ())
@@ -166,7 +166,7 @@ def two_commas(at: Situation) -> SyntaxProblem | None:
 
 
 def bare_generator(at: Situation) -> SyntaxProblem | None:
-    """``f(x for x in y, 1)``."""
+    """Explain a generator without parentheses beside another argument, as in ``f(x for x in y, 1)``."""
     opener = at.opener(at.token)
     if at.found != "," or opener is None or at.word(opener) != "(" or not at.expects("for"):
         return None
@@ -186,7 +186,7 @@ def bare_generator(at: Situation) -> SyntaxProblem | None:
 
 
 def call_without_parentheses(at: Situation) -> SyntaxProblem | None:
-    """``x = Range 1, 2``."""
+    """Explain a call without parentheses, as in ``x = Range 1, 2``."""
     if not at.is_plain_name(at.token - 1) or at.tokens.kinds[at.token] not in (NUMBER, STRING):
         return None
     if not at.before[:1].isupper():
@@ -204,7 +204,7 @@ def call_without_parentheses(at: Situation) -> SyntaxProblem | None:
 
 
 def trailing_comma(at: Situation) -> SyntaxProblem | None:
-    """``from m import a,``, ``param x = 1,``, ``do A(), until x``."""
+    """Explain a comma that nothing follows, as in ``from m import a,``, ``param x = 1,``, ``do A(), until x``."""
     if at.before != ",":
         return None
     change = Change(at.token - 1, at.token, ())
@@ -220,7 +220,7 @@ def trailing_comma(at: Situation) -> SyntaxProblem | None:
 
 
 def missing_dictionary_value(at: Situation) -> SyntaxProblem | None:
-    """``{a: 1, b}``."""
+    """Explain a key of a dictionary without a value, as in ``{a: 1, b}``."""
     opener = at.opener(at.token)
     if opener is None or at.word(opener) != "{" or not at.expects(":") or at.found not in (",", "}"):
         return None
@@ -236,7 +236,7 @@ def missing_dictionary_value(at: Situation) -> SyntaxProblem | None:
 
 
 def missing_loop_word(at: Situation) -> SyntaxProblem | None:
-    """``for x y:``, ``for x of y:``."""
+    """Explain a loop without `in`, as in ``for x y:``, ``for x of y:``."""
     if not at.expects("in") or not any(at.word(i) == "for" for i in range(at.first, at.token)):
         return None
     if at.word(at.first) not in ("for", "async") and at.opener(at.token) is None:
@@ -259,7 +259,7 @@ def missing_loop_word(at: Situation) -> SyntaxProblem | None:
 
 
 def conditional_without_else(at: Situation) -> SyntaxProblem | None:
-    """``x = a if b``."""
+    """Explain a conditional expression without `else`, as in ``x = a if b``."""
     if not at.expects("else") or at.found == ":":
         return None
     conditions = [i for i in range(at.first, at.token) if at.word(i) == "if"]
@@ -278,7 +278,7 @@ def conditional_without_else(at: Situation) -> SyntaxProblem | None:
 
 
 def keyword_assigned(at: Situation) -> SyntaxProblem | None:
-    """``class = 3``, ``param at = 3``: the mistake is noticed only behind the keyword."""
+    """Explain an assignment to a keyword, which is noticed only behind it, as in ``class = 3``, ``param at = 3``."""
     if at.found != "=" or at.tokens.kinds[at.token - 1] not in _KEYWORD_KINDS or at.expects("=="):
         return None
     if at.token - 1 != at.first and at.word(at.token - 2) not in ("param", ","):
@@ -294,7 +294,7 @@ def keyword_assigned(at: Situation) -> SyntaxProblem | None:
 
 
 def keyword_as_name(at: Situation) -> SyntaxProblem | None:
-    """``def f(at)``, ``p.to``, ``in = 3``."""
+    """Explain a keyword where a name has to stand, as in ``def f(at)``, ``p.to``, ``in = 3``."""
     if at.at_end() or at.tokens.kinds[at.token] not in _KEYWORD_KINDS:
         return None
     names = (
@@ -327,7 +327,7 @@ def keyword_as_name(at: Situation) -> SyntaxProblem | None:
 
 
 def print_statement(at: Situation) -> SyntaxProblem | None:
-    """``print x``."""
+    """Explain `print` as a statement, as in ``print x``."""
     if (
         at.word(at.first) not in ("print", "exec")
         or at.token != at.first + 1
@@ -348,7 +348,7 @@ def print_statement(at: Situation) -> SyntaxProblem | None:
 
 
 def except_of_several(at: Situation) -> SyntaxProblem | None:
-    """``except A, B:``."""
+    """Explain several exceptions without parentheses, as in ``except A, B:``."""
     if at.word(at.first) != "except" or at.found != ",":
         return None
     stop = next((i for i in range(at.token, at.end) if at.word(i) in (":", "as")), at.end)
@@ -363,7 +363,7 @@ def except_of_several(at: Situation) -> SyntaxProblem | None:
 
 
 def raise_of_two(at: Situation) -> SyntaxProblem | None:
-    """``raise E, "message"``."""
+    """Explain `raise` with two values, as in ``raise E, "message"``."""
     if at.word(at.first) != "raise" or at.found != ",":
         return None
     return at.problem(
@@ -378,7 +378,7 @@ def raise_of_two(at: Situation) -> SyntaxProblem | None:
 
 
 def replacement_field(at: Situation) -> SyntaxProblem | None:
-    """``f"{}"``, ``f"{a b}"``, ``f"{lambda: x}"``."""
+    """Explain a mistake in a replacement field of an f-string, as in ``f"{}"``, ``f"{a b}"``, ``f"{lambda: x}"``."""
     opener = at.opener(at.token)
     if opener is not None and at.tokens.kinds[opener - 1] in (FSTRING_START, FSTRING_MIDDLE):
         if at.tokens.kinds[at.token] == FSTRING_MIDDLE and "lambda" in (

@@ -50,7 +50,7 @@ class Situation:
     # Words.
 
     def word(self, index: int) -> str:
-        """The text of a token of the line, nothing outside it."""
+        """Return the text of a token of the line, an empty text outside it."""
         return self.tokens.texts[index] if self.first <= index < self.end else ""
 
     @property
@@ -64,7 +64,7 @@ class Situation:
         return self.word(self.token - 1)
 
     def words(self, first: int, end: int) -> str:
-        """Several tokens as they would be written."""
+        """Return several tokens as they would be written."""
         text = ""
         for index in range(first, end):
             word = self.word(index)
@@ -104,7 +104,7 @@ class Situation:
         return any(word in self.expected or WORDS.get(word) in self.expected for word in wanted)
 
     def opener(self, index: int) -> int | None:
-        """The bracket of the line that is open at a token."""
+        """Return the bracket of the line that is open at a token."""
         depth = 0
         for position in range(min(index, self.end) - 1, self.first - 1, -1):
             word = self.word(position)
@@ -126,7 +126,7 @@ class Situation:
         )
 
     def _block_start(self) -> int | None:
-        """The token that begins the block around this line, ``None`` at the top level or if it is very far."""
+        """Return the token that begins the block around this line, ``None`` at the top level or if it is very far."""
         kinds = self.tokens.kinds
         depth, index = 0, self.first - 1
         farthest = max(0, index - _FARTHEST)
@@ -136,7 +136,7 @@ class Situation:
         return index if index > max(farthest, 1) else None
 
     def header(self) -> "Situation | None":
-        """The line that the block around this line belongs to, as if its second token were wrong."""
+        """Return the line that the block around this line belongs to, as if its second token were wrong."""
         index = self._block_start()
         if index is None:
             return None
@@ -144,7 +144,7 @@ class Situation:
         return self.elsewhere(first, first + 1)
 
     def context(self) -> str:
-        """The reading of the line: as an item of a class, a line of specifiers, or a statement (see `Trials.run`)."""
+        """Return how the line is read: as an item of a class, a line of specifiers, or a statement (see `Trials.run`)."""
         if self._context is None:
             self._context = ""
             index = self._block_start()
@@ -156,7 +156,7 @@ class Situation:
         return self._context
 
     def lines_of_block(self) -> list[int]:
-        """The first tokens of the lines of the block that this line is in, without those of blocks inside it."""
+        """Return the first tokens of the lines of the block that this line is in, without those of blocks inside it."""
         kinds = self.tokens.kinds
         index, depth = self.first, 0
         while index > 0 and not (kinds[index - 1] == INDENT and depth == 0):
@@ -179,7 +179,7 @@ class Situation:
         return lines
 
     def elsewhere(self, start: int, token: int, expected: frozenset[int | str] = frozenset()) -> "Situation":
-        """Another mistake in the same text."""
+        """Return the situation of another mistake in the same text."""
         return Situation(self.tokens, self.trials, start, token, expected)
 
     # Places.
@@ -216,7 +216,7 @@ class Situation:
     # Repairs.
 
     def reads(self, changes: Sequence[Change], *, context: str | None = None) -> TrialOutcome:
-        """The reading of the line with ``changes``."""
+        """Read the line with ``changes``."""
         if context is None:
             context = self.context()
         return self.trials.run(self.token, changes, context=context)

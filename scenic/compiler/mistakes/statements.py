@@ -47,7 +47,7 @@ _BINDING_LESS: Final = frozenset({"and", "or", "if", "implies", "until", "lambda
 
 
 def clauses_out_of_order(at: Situation) -> SyntaxProblem | None:
-    """``record x to y every 3 steps``, ``follow f for 3 from p``."""
+    """Explain clauses of a statement in the wrong order, as in ``record x to y every 3 steps``, ``follow f for 3 from p``."""
     for index in range(at.token - 1, at.first - 1, -1):
         word = at.word(index)
         if word not in _ORDERS:
@@ -75,7 +75,7 @@ def clauses_out_of_order(at: Situation) -> SyntaxProblem | None:
 
 
 def initial_or_final_clause(at: Situation) -> SyntaxProblem | None:
-    """``record initial x every 3 seconds``."""
+    """Explain a clause that `record initial` and `record final` do not take, as in ``record initial x every 3 seconds``."""
     if at.word(at.first) != "record" or at.found not in ("every", "after", "to"):
         return None
     moment = at.word(at.first + 1)
@@ -90,7 +90,7 @@ def initial_or_final_clause(at: Situation) -> SyntaxProblem | None:
 
 
 def _until_or_for(at: Situation) -> SyntaxProblem | None:
-    """``do for 3 seconds``, ``do a for 3 seconds until x``, ``do a, b until x``."""
+    """Explain clauses of `do`, as in ``do for 3 seconds``, ``do a for 3 seconds until x``, ``do a, b until x``."""
     if at.token == at.first + 1:
         clause = "until condition" if at.found == "until" else "for 3 seconds"
         message = f"what to do has to stand before `{at.found}`"
@@ -121,7 +121,7 @@ def _until_or_for(at: Situation) -> SyntaxProblem | None:
 
 
 def _while(at: Situation) -> SyntaxProblem:
-    """``do a while x``."""
+    """Explain ``do a while x``."""
     changes = [Change(at.token, at.token + 1, ("until", "not"))]
     if not _BINDING_LESS.isdisjoint(map(at.word, range(at.token, at.end))):
         # `until not a and b` would end it for other reasons.
@@ -136,7 +136,7 @@ def _while(at: Situation) -> SyntaxProblem:
 
 
 def target_first(at: Situation) -> SyntaxProblem | None:
-    """``do until x``, ``do for 3 seconds``, ``mutate by 2 x``, ``terminate x when``."""
+    """Explain a clause that stands before the operand of its statement, as in ``do until x``, ``do for 3 seconds``, ``mutate by 2 x``, ``terminate x when``."""
     first = at.word(at.first)
     if first == "do" and at.found in ("until", "for"):
         return _until_or_for(at)
@@ -153,7 +153,7 @@ def target_first(at: Situation) -> SyntaxProblem | None:
 
 
 def missing_unit(at: Situation) -> SyntaxProblem | None:
-    """``terminate after 3``, ``wait for 3 minutes``."""
+    """Explain a duration without its unit, as in ``terminate after 3``, ``wait for 3 minutes``."""
     if not at.expects("seconds") or not at.expects("steps"):
         return None
     if at.at_end() or at.found in (";", "as", "to", "after", "every", ","):
@@ -184,7 +184,7 @@ def missing_unit(at: Situation) -> SyntaxProblem | None:
 
 
 def message_of_requirement(at: Situation) -> SyntaxProblem | None:
-    """``require x, "message"``, as `assert` has it."""
+    """Explain ``require x, "message"``, which `assert` allows."""
     if at.word(at.first) != "require" or at.found != "," or at.opener(at.token) is not None:
         return None
     if at.tokens.kinds[at.token + 1] == STRING:
@@ -204,7 +204,7 @@ def message_of_requirement(at: Situation) -> SyntaxProblem | None:
 
 
 def probability(at: Situation) -> SyntaxProblem | None:
-    """``require[p] x``: the probability has to be written out."""
+    """Explain a probability of ``require[p] x`` that is not a number."""
     first = at.first
     if at.word(first) != "require":
         return None
@@ -234,7 +234,7 @@ def probability(at: Situation) -> SyntaxProblem | None:
 
 
 def quoted_module(at: Situation) -> SyntaxProblem | None:
-    """``model 'x'``, ``import 'x'``."""
+    """Explain a module in quotation marks, as in ``model 'x'``, ``import 'x'``."""
     if at.word(at.first) not in ("model", "import", "from") or at.token != at.first + 1:
         return None
     if at.tokens.kinds[at.token] != STRING:
@@ -252,7 +252,7 @@ def quoted_module(at: Situation) -> SyntaxProblem | None:
 
 
 def setting_of_parameter(at: Situation) -> SyntaxProblem | None:
-    """``param x 3``, ``param x: 3``."""
+    """Explain a parameter that is set without `=`, as in ``param x 3``, ``param x: 3``."""
     if at.word(at.first) != "param" or not at.expects("=") or at.token < at.first + 2:
         return None
     if at.found in (":", "==", ":="):
@@ -271,7 +271,7 @@ def setting_of_parameter(at: Situation) -> SyntaxProblem | None:
 
 
 def not_a_plain_name(at: Situation) -> SyntaxProblem | None:
-    """``mutate a.b``, ``import a as b.c``."""
+    """Explain an expression where a plain name has to stand, as in ``mutate a.b``, ``import a as b.c``."""
     if at.found not in (".", "[", "("):
         return None
     if at.word(at.first) == "mutate" and at.opener(at.token) is None:
@@ -292,7 +292,7 @@ def not_a_plain_name(at: Situation) -> SyntaxProblem | None:
 
 
 def monitor_without_parentheses(at: Situation) -> SyntaxProblem | None:
-    """``monitor M:``, as older dialects had it."""
+    """Explain ``monitor M:``, which older dialects had."""
     if at.word(at.first) != "monitor" or at.found != ":" or at.token != at.first + 2:
         return None
     return at.problem(
@@ -305,7 +305,7 @@ def monitor_without_parentheses(at: Situation) -> SyntaxProblem | None:
 
 
 def constructor(at: Situation) -> SyntaxProblem | None:
-    """``constructor C:``, as the first dialect had it."""
+    """Explain ``constructor C:``, which the first dialect had."""
     if at.word(at.first) != "constructor" or not at.is_name(at.first + 1) or at.token != at.first + 1:
         return None
     change = Change(at.first, at.first + 1, ("class",))
@@ -321,7 +321,7 @@ def constructor(at: Situation) -> SyntaxProblem | None:
 
 
 def definition_without_parentheses(at: Situation) -> SyntaxProblem | None:
-    """``behavior B:``, ``def f:``."""
+    """Explain a definition without parentheses, as in ``behavior B:``, ``def f:``."""
     word = at.word(at.first + 1) if at.word(at.first) == "async" else at.word(at.first)
     if word not in ("behavior", "def") or not at.is_name(at.token - 1) or at.word(at.token - 2) != word:
         return None
@@ -337,7 +337,7 @@ def definition_without_parentheses(at: Situation) -> SyntaxProblem | None:
 
 
 def attribute_of_property(at: Situation) -> SyntaxProblem | None:
-    """``speed[volatile]: 3``."""
+    """Explain an unknown attribute of a property, as in ``speed[volatile]: 3``."""
     if not at.expects("`additive`, `dynamic` or `final`"):
         return None
     if at.found == "]":
@@ -361,7 +361,7 @@ def attribute_of_property(at: Situation) -> SyntaxProblem | None:
 
 
 def annotated_property(at: Situation) -> SyntaxProblem | None:
-    """``width: float = 2`` in a class."""
+    """Explain an annotated assignment in a class, as in ``width: float = 2``."""
     if at.found != "=" or at.word(at.first + 1) != ":" or at.expects("=") or at.before == ":":
         return None
     if at.context() != "class":
@@ -379,7 +379,7 @@ _PARTS: Final = ("setup", "compose")
 
 
 def parts_of_scenario(at: Situation) -> SyntaxProblem | None:
-    """``setup`` after ``compose``, beside other statements, or outside a scenario."""
+    """Explain ``setup`` after ``compose``, beside other statements, or outside a scenario."""
     word = at.word(at.first)
     begins = word in _PARTS and at.word(at.first + 1) == ":" and at.token <= at.first + 2
     if not begins or (at.start < at.first and word != "setup"):
@@ -423,7 +423,7 @@ def parts_of_scenario(at: Situation) -> SyntaxProblem | None:
 
 
 def definition_without_name(at: Situation) -> SyntaxProblem | None:
-    """``behavior:``, ``scenario ():``."""
+    """Explain a definition without a name, as in ``behavior:``, ``scenario ():``."""
     word = at.word(at.first)
     if word not in ("behavior", "monitor", "scenario") or at.word(at.first + 1) not in (":", "("):
         return None
@@ -435,7 +435,7 @@ def definition_without_name(at: Situation) -> SyntaxProblem | None:
 
 
 def stray_specifier(at: Situation) -> SyntaxProblem | None:
-    """A line that starts with a specifier."""
+    """Explain a line that starts with a specifier."""
     if at.token != at.first or at.start != at.first or at.tokens.kinds[at.token] not in SPECIFIER_KINDS:
         return None
     if at.found in ("not", "with") or at.word(at.token + 1) == "=":
@@ -449,7 +449,7 @@ def stray_specifier(at: Situation) -> SyntaxProblem | None:
 
 
 def statement_in_expression(at: Situation) -> SyntaxProblem | None:
-    """``x = require y``, ``f(return 3)``, ``x = take y``."""
+    """Explain a statement inside an expression, as in ``x = require y``, ``f(return 3)``, ``x = take y``."""
     if at.before in SOFT_STATEMENT_WORDS and at.token > at.first + 1 and at.starts_operand(at.token):
         word, place = at.before, at.place(at.token - 1)
         if at.word(at.token - 2) not in ("=", "(", ",", "[", ":", "return"):

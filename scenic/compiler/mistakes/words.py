@@ -49,7 +49,7 @@ _CORNER_STEP: Final = {"top": 0, "bottom": 0, "front": 1, "back": 1, "left": 2, 
 
 
 def _near(word: str) -> Iterator[str]:
-    """Keywords that ``word`` may have been meant to be, nearest first."""
+    """Yield the keywords that ``word`` may have been meant to be, nearest first."""
     if word.lower() in OTHER_WORDS:
         return iter(())
     reach = max(1, len(word) // 3) if len(word) > 1 else 0
@@ -98,7 +98,7 @@ SYNONYMS: Final = {
 
 
 def misspelt(at: Situation) -> SyntaxProblem | None:
-    """``requier x``, ``new C facng x``, ``a reltive to b``: with a keyword instead of a word the line is right."""
+    """Explain a misspelt keyword, which alone makes the line wrong, as in ``requier x``, ``new C facng x``, ``a reltive to b``."""
     for index in (at.token, at.token - 1, at.first, at.token - 2):
         # What is a keyword already is not a misspelt one, unless it is one of those nobody would suspect.
         if not at.is_name(index) or at.word(index - 1) == ".":
@@ -117,7 +117,7 @@ def misspelt(at: Situation) -> SyntaxProblem | None:
 
 
 def _parted(word: str) -> tuple[str, ...]:
-    """The two keywords that a word joins: ``leftof``, ``offset_by``."""
+    """Return the two keywords that a word joins: ``leftof``, ``offset_by``."""
     for connector in CONNECTORS:
         first = word.lower().removesuffix(connector).rstrip("_")
         if word.lower().endswith(connector) and first in _KEYWORDS:
@@ -130,7 +130,7 @@ _PROPERTIES: Final = frozenset(properties_of("Object"))
 
 
 def perhaps_misspelt(at: Situation) -> SyntaxProblem | None:
-    """The same in a line that has a further mistake."""
+    """Explain a misspelt keyword in a line that has a further mistake."""
     for index in (at.token, at.token - 1, at.first):
         if not at.is_plain_name(index) or at.word(index - 1) == "." or len(at.word(index)) < 4:
             continue
@@ -166,7 +166,7 @@ _OTHER_WORDS: Final = {
 
 
 def other_word(at: Situation) -> SyntaxProblem | None:
-    """``terminate if c``, ``interrupt if c:``, ``facing at x``."""
+    """Explain a word that another one is mistaken for, as in ``terminate if c``, ``interrupt if c:``, ``facing at x``."""
     for index in range(at.first + 1, min(at.token, at.end - 1) + 1):
         replacement = _OTHER_WORDS.get((at.word(index - 1), at.word(index)))
         if replacement is None or (at.word(index - 1) != "facing" and index > at.first + 2):
@@ -184,7 +184,7 @@ def other_word(at: Situation) -> SyntaxProblem | None:
 
 
 def negated_sight(at: Situation) -> SyntaxProblem | None:
-    """``a can not see b``, ``a cannot see b``."""
+    """Explain a negation inside `can see`, as in ``a can not see b``, ``a cannot see b``."""
     if at.found == "cannot" and at.word(at.token + 1) == "see":
         first, last = at.token, at.token + 1
     elif (at.before, at.found, at.word(at.token + 1)) == ("can", "not", "see"):
@@ -209,7 +209,7 @@ def negated_sight(at: Situation) -> SyntaxProblem | None:
 
 
 def missing_word(at: Situation) -> SyntaxProblem | None:
-    """``left ego``, ``distance from a b``, ``relative heading a``: one word makes it right."""
+    """Explain one missing word of a form, as in ``left ego``, ``distance from a b``, ``relative heading a``."""
     if at.at_end() or not (at.starts_operand(at.token) or at.before in _PHRASES or at.found in _KEYWORDS):
         return None
     phrase = _phrase(at)
@@ -263,7 +263,7 @@ def _fits(at: Situation, word: str) -> bool:
 
 
 def _phrase(at: Situation) -> int | None:
-    """The first token of the form that continues at the mistake."""
+    """Return the first token of the form that continues at the mistake."""
     depth, position = 0, None
     for index in range(at.token - 1, at.first - 1, -1):
         word = at.word(index)
@@ -282,7 +282,7 @@ def _phrase(at: Situation) -> int | None:
 
 
 def wrong_word(at: Situation) -> SyntaxProblem | None:
-    """``ahead from x``, ``distance of x``: another small word than the form has."""
+    """Explain a small word that the form does not have, as in ``ahead from x``, ``distance of x``."""
     phrase = _phrase(at)
     if at.found not in _SMALL or phrase is None:
         return None
@@ -315,7 +315,7 @@ def _either(words: Sequence[str]) -> str:
 
 
 def needless_word(at: Situation) -> SyntaxProblem | None:
-    """``behind of x``, ``distance to to x``."""
+    """Explain a small word that the form does not need, as in ``behind of x``, ``distance to to x``."""
     if at.found not in _SMALL or (at.tokens.kinds[at.token - 1] < NAME and at.before not in _SMALL):
         return None
     if (
@@ -334,7 +334,7 @@ def needless_word(at: Situation) -> SyntaxProblem | None:
 
 
 def between(at: Situation) -> SyntaxProblem | None:
-    """``distance between a and b``."""
+    """Explain `between` after `distance`, `angle` or `altitude`, as in ``distance between a and b``."""
     if at.found != "between" or at.before not in ("distance", "angle", "altitude"):
         return None
     joint = next((i for i in range(at.token + 1, at.end) if at.word(i) == "and"), None)
@@ -351,7 +351,7 @@ def between(at: Situation) -> SyntaxProblem | None:
 
 
 def kind_of_heading(at: Situation) -> SyntaxProblem | None:
-    """``heading of x``, ``relative x``, ``apparent x``."""
+    """Explain a heading or position without the word for its kind, as in ``heading of x``, ``relative x``, ``apparent x``."""
     if at.found == "of" and at.before in ("heading", "position"):
         kinds = ["relative", "apparent"] if at.before == "heading" else ["relative"]
         good = [kind for kind in kinds if at.helps(insertion(at.token - 1, kind))]
@@ -381,7 +381,7 @@ def kind_of_heading(at: Situation) -> SyntaxProblem | None:
 
 
 def operator_without_left_side(at: Situation) -> SyntaxProblem | None:
-    """``x = relative to b``, ``x = can see b``."""
+    """Explain an operator without its left operand, as in ``x = relative to b``, ``x = can see b``."""
     form = f"{at.before} {at.found}"
     if form not in ("relative to", "can see", "offset by", "offset along", "visible from"):
         return None
@@ -397,7 +397,7 @@ def operator_without_left_side(at: Situation) -> SyntaxProblem | None:
 
 
 def missing_operand(at: Situation) -> SyntaxProblem | None:
-    """``beyond x from y``, ``follow f for 3``: a whole clause is missing before a word."""
+    """Explain a missing clause before a word of a form, as in ``beyond x from y``, ``follow f for 3``."""
     for opening, keyword, clause in (
         ("beyond", "by", "by distance"),
         ("follow", "from", "from position"),
@@ -427,7 +427,7 @@ def missing_operand(at: Situation) -> SyntaxProblem | None:
 
 
 def order_of_corners(at: Situation) -> SyntaxProblem | None:
-    """``top left of x``, ``left front of x``."""
+    """Explain the words of a corner in the wrong order, as in ``top left of x``, ``left front of x``."""
     last = at.token
     while at.word(last) in _CORNERS:
         last += 1

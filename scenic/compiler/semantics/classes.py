@@ -144,8 +144,8 @@ class Class:
         node: Any = self.symbol.node
         if self.is_scenic or node is None:
             return None
-        own = self.initial_is_own and not node.keywords
-        if not (own or self.complete) or self.member("__new__") is not None:
+        has_own_initial = self.initial_is_own and not node.keywords
+        if not (has_own_initial or self.complete) or self.member("__new__") is not None:
             return None
         initial = self.member("__init__")
         method: Any = None if initial is None or initial.symbol is None else initial.symbol.node
@@ -292,7 +292,7 @@ def _refines(site: ast.AST, first: ast.AST) -> bool:
 
 
 def _outline(site: ast.AST) -> tuple[tuple[str, ...], tuple[str, ...]] | None:
-    """Bases and properties of a class that has nothing else; ``None`` for any other definition."""
+    """Return the bases and properties of a class that has nothing else; ``None`` for any other definition."""
     if not isinstance(site, ast.ClassDef) or site.keywords or site.decorator_list:
         return None
     properties = []
@@ -408,11 +408,11 @@ def _set_by_methods(module: Module, symbol: Symbol, node: ast.ClassDef) -> Itera
 
 def find_cycle(names: list[str], needed: Callable[[str], tuple[str, ...]]) -> list[str] | None:
     """The properties of one cycle, in order; ``None`` if there is none."""
-    finished: set[str] = set()
+    names_done: set[str] = set()
     for start in names:
         path: list[str] = []
         stack: list[tuple[str, Iterator[str]]] = []
-        if start not in finished:
+        if start not in names_done:
             path.append(start)
             stack.append((start, iter(needed(start))))
         while stack:
@@ -421,10 +421,10 @@ def find_cycle(names: list[str], needed: Callable[[str], tuple[str, ...]]) -> li
             if following is None:
                 stack.pop()
                 path.pop()
-                finished.add(name)
+                names_done.add(name)
             elif following in path:
                 return path[path.index(following) :]
-            elif following not in finished:
+            elif following not in names_done:
                 path.append(following)
                 stack.append((following, iter(needed(following))))
     return None

@@ -160,7 +160,7 @@ class Names:
         return next((exports.names[name] for exports in stars if name in exports.names), None)
 
     def definition(self, name: ast.expr | None) -> Symbol | None:
-        """The one definition that an expression can only mean, in whatever module; ``None`` if there may be others, or decorators."""
+        """Return the one definition that an expression can only mean, in whatever module; ``None`` if there may be others, or decorators."""
         # Several rules ask about each name.
         if name in self._definitions:
             return self._definitions[name]
@@ -276,16 +276,18 @@ class Names:
     @cached_property
     def grown(self) -> frozenset[str]:
         """The names of lists and dictionaries whose elements the program may change, by this name or by another."""
-        changed = [node.value for node, _ in self.nodes(ast.Attribute) if node.attr in _GROWING]
-        changed += [node.value for node, _ in self.nodes(ast.Subscript) if not isinstance(node.ctx, ast.Load)]
+        containers = [node.value for node, _ in self.nodes(ast.Attribute) if node.attr in _GROWING]
+        containers += [
+            node.value for node, _ in self.nodes(ast.Subscript) if not isinstance(node.ctx, ast.Load)
+        ]
         for cls in _HANDING_ON:
-            changed += [part for node, _ in self.nodes(cls) for part in _shared_parts(node.value)]
+            containers += [part for node, _ in self.nodes(cls) for part in _shared_parts(node.value)]
         for node, _ in self.nodes(ast.Call):
             if self.provided(node.func) is None:
-                changed += [part for each in node.args for part in _shared_parts(each)]
-                changed += [part for each in node.keywords for part in _shared_parts(each.value)]
+                containers += [part for each in node.args for part in _shared_parts(each)]
+                containers += [part for each in node.keywords for part in _shared_parts(each.value)]
         names: set[str] = set()
-        for each in changed:
+        for each in containers:
             while isinstance(each, ast.Subscript | ast.Attribute):
                 each = each.value
             names.update([each.id] if isinstance(each, ast.Name) else ())

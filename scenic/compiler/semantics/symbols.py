@@ -181,10 +181,10 @@ def symbol_of_exported(modules: Modules, target: Exported | FoundModule) -> Symb
         return symbol_of_module(target)
     if target.module is None or target.binding is None:
         return Symbol(target.name, SymbolKind.VARIABLE)
-    known: Symbol | None = modules.derived.get(target.binding)
-    if known is None:
-        known = modules.derived[target.binding] = symbol_of_binding(target.module, target.binding)
-    return known
+    symbol: Symbol | None = modules.derived.get(target.binding)
+    if symbol is None:
+        symbol = modules.derived[target.binding] = symbol_of_binding(target.module, target.binding)
+    return symbol
 
 
 def symbol_of_binding(module: Module, binding: Binding) -> Symbol:

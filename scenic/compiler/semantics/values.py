@@ -110,13 +110,13 @@ class Values:
         """Return the value of an expression."""
         if depth > _DEEPEST:
             return _UNKNOWN
-        known = self._values.get(node)
-        if known is None:
+        result = self._values.get(node)
+        if result is None:
             self._values[node] = _UNKNOWN  # A name that is bound to itself.
             infer = _INFERENCES.get(node.__class__)
-            known = _UNKNOWN if infer is None else infer(self, module, node, depth + 1)
-            self._values[node] = known
-        return known
+            result = _UNKNOWN if infer is None else infer(self, module, node, depth + 1)
+            self._values[node] = result
+        return result
 
     def meaning(self, module: Module, node: ast.expr, depth: int = 0) -> Symbol | None:
         """The meaning of a name or an attribute of a program; ``None`` if it is unknown."""
@@ -161,8 +161,8 @@ class Values:
             return Value(ValueKind(name))
         values = [self.value(module, part, depth) for part in parts[:_MOST_PARTS]]
         common = _common(values) if len(parts) <= _MOST_PARTS else _UNKNOWN
-        known = (value.kind for value in values)
-        odd = next((each for each in known if each is not None and each.name not in kinds.NUMBERS), None)
+        item_kinds = (value.kind for value in values)
+        odd = next((each for each in item_kinds if each is not None and each.name not in kinds.NUMBERS), None)
         return Value(ValueKind(name, len(parts), items=common.kind, odd=odd), elements=common.cls)
 
     def _list_comprehension(self, module: Module, node: ast.ListComp, depth: int) -> Value:
@@ -239,9 +239,9 @@ class Values:
         if method is not None:
             return Value(None if method.result is None else kind_of_type(method.result.name))
         names = self._classes.names(module)
-        provided = names.likely_provided(function)
-        if provided is not None:
-            value = self._call_of_provided(module, provided, node, depth)
+        provided_name = names.likely_provided(function)
+        if provided_name is not None:
+            value = self._call_of_provided(module, provided_name, node, depth)
             return value if names.provided(function) else Value(None, value.cls, value.elements)
         definition = names.definition(function)
         kind, likely = None, _UNKNOWN
@@ -249,14 +249,14 @@ class Values:
             kind = ValueKind(_RUN[definition.kind])
         elif definition is not None and definition.module is not None and definition.node is not None:
             home = definition.module
-            returned = self._classes.names(home).returned(definition.node)
-            likely = self._alike(home, returned, depth) if returned else _UNKNOWN
+            results = self._classes.names(home).returned(definition.node)
+            likely = self._alike(home, results, depth) if results else _UNKNOWN
             kind = likely.kind
-        meant = definition or self.meaning(module, function, depth)
-        if meant is not None and meant.kind is SymbolKind.CLASS:
-            return Value(kind, meant)
-        annotated = _UNKNOWN if meant is None else self._annotated_symbol(meant, depth, called=True)
-        return Value(kind, annotated.cls or likely.cls, annotated.elements or likely.elements)
+        meaning = definition or self.meaning(module, function, depth)
+        if meaning is not None and meaning.kind is SymbolKind.CLASS:
+            return Value(kind, meaning)
+        annotation = _UNKNOWN if meaning is None else self._annotated_symbol(meaning, depth, called=True)
+        return Value(kind, annotation.cls or likely.cls, annotation.elements or likely.elements)
 
     def _call_of_provided(self, module: Module, name: str, node: ast.Call, depth: int) -> Value:
         """The value of a call of what the language provides under a name."""
@@ -296,8 +296,8 @@ class Values:
             return None
         if owner.name in INSTANCES:
             return None if function.attr in names.owners else INSTANCE_METHODS.get(function.attr)
-        found = members_of(owner.name).get(function.attr)
-        return found if found is not None and found.is_method else None
+        member = members_of(owner.name).get(function.attr)
+        return member if member is not None and member.is_method else None
 
     # Attributes
 
@@ -311,9 +311,9 @@ class Values:
                 return None
             return kind_of_type(member.result.name)
         cls = _CLASS_OF_KIND.get(owner.name, "Object")
-        declared = properties_of(cls).get(node.attr)
-        if declared is not None:
-            return kind_of_type(declared.type)
+        property_declaration = properties_of(cls).get(node.attr)
+        if property_declaration is not None:
+            return kind_of_type(property_declaration.type)
         attribute = attributes_of(cls).get(node.attr)
         return None if attribute is None or attribute.is_method else kind_of_type(attribute.type)
 
@@ -345,21 +345,21 @@ class Values:
         names = self._classes.names(module)
         if node.id == "ego":
             return self._ego(module, node, depth)
-        provided = names.provided(node)
-        if provided in ("everywhere", "nowhere"):
+        provided_name = names.provided(node)
+        if provided_name in ("everywhere", "nowhere"):
             return Value(kinds.REGION)
-        if provided is not None:
-            declared = NAMES[provided].kind if provided in NAMES else None
-            if declared is NameKind.FUNCTION:
+        if provided_name is not None:
+            name_kind = NAMES[provided_name].kind if provided_name in NAMES else None
+            if name_kind is NameKind.FUNCTION:
                 return Value(kinds.FUNCTION)
-            return Value(kinds.CLASS if declared in _MADE_BY_CALLS else None)
-        brought = names.brought.get(node.id)
-        if brought is None:
+            return Value(kinds.CLASS if name_kind in _MADE_BY_CALLS else None)
+        import_target = names.brought.get(node.id)
+        if import_target is None:
             return _UNKNOWN
         definition = names.definition(node)
         if definition is not None:
             return Value(self._of_definition(definition))
-        value = self.of_exported(brought, depth)
+        value = self.of_exported(import_target, depth)
         certain = not names.wildcard and not names.resolution.reflective
         return Value(self._kind_of_class(value.cls) if certain else None, value.cls, value.elements)
 
@@ -430,10 +430,10 @@ class Values:
             if run is not None:
                 return Value(None, self.value(module, run, depth).elements)
             if site.annotation is not None:
-                annotated = self._annotated(module, site.annotation, depth)
-                asked = binding.name in self._classes.names(module).examined
-                kind = None if asked else self._kind_of_annotation(module, site.annotation)
-                return Value(kind, annotated.cls, annotated.elements)
+                annotation = self._annotated(module, site.annotation, depth)
+                is_examined = binding.name in self._classes.names(module).examined
+                kind = None if is_examined else self._kind_of_annotation(module, site.annotation)
+                return Value(kind, annotation.cls, annotation.elements)
         return Value(None, _class_of_self(module, binding.scope, binding.name))
 
     # Annotations
@@ -482,8 +482,8 @@ class Values:
                 return Value(elements=self._annotated(module, first, depth + 1).cls)
             case ast.Name(id=name):
                 names = self._classes.names(module)
-                exported = names.at_top(name)
-                symbol = None if exported is None else names.symbol_of(exported)
+                target = names.at_top(name)
+                symbol = None if target is None else names.symbol_of(target)
                 return Value(cls=_if_class(symbol))
         return _UNKNOWN
 
@@ -496,11 +496,11 @@ class Values:
                 return None
             if cls.filename is not None and is_of_library(cls.filename):
                 home = cls.filename.removeprefix(LIBRARY).removesuffix(".py").replace(os.sep, ".")
-                declared = _DECLARED.get(f"scenic.{home}:{cls.name}")
-                if declared is not None:
-                    return kind_of_type(declared)
-            known = self._classes.of_symbol(cls)
-            waiting += () if known is None else known.bases
+                type_declared = _DECLARED.get(f"scenic.{home}:{cls.name}")
+                if type_declared is not None:
+                    return kind_of_type(type_declared)
+            ancestor = self._classes.of_symbol(cls)
+            waiting += () if ancestor is None else ancestor.bases
         return None
 
 

@@ -62,7 +62,7 @@ class _Strip:
         return self.lane.id
 
     def lines(self, forward: bool) -> tuple[Floats, Floats, Floats]:
-        """Centerline, left and right edge in the direction of traffic."""
+        """Return the centerline, left and right edge in the direction of traffic."""
         left, right = self.shape.boundaries[self.index], self.shape.boundaries[self.index + 1]
         middle = (left + right) / 2
         if forward:
@@ -397,7 +397,7 @@ class _RoadBuilder:
         return lane
 
     def _following(self, number: int, sections: list[dict[int, LaneSection]]) -> dict[int, int]:
-        """For lanes of a section, by id, the lane of the next section that they lead into along the reference line."""
+        """Return by id, for lanes of a section, the lane of the next section that they lead into along the reference line."""
         here = {strip.id: strip.lane for strip in self._drivable[number]}
         there = {strip.id: strip.lane for strip in self._drivable[number + 1]}
         next_lanes = {}
@@ -457,7 +457,7 @@ class _RoadBuilder:
             road.backwardLanes._opposite = road.forwardLanes
 
     def _group_edges(self, forward: bool) -> tuple[Floats, Floats, Floats]:
-        """Left edge, right edge and middle of the lanes of one direction, in that direction."""
+        """Return the left edge, right edge and middle of the lanes of one direction, in that direction."""
         left, right, middle = [], [], []
         for row in self._drivable:
             mine = [strip for strip in row if self._is_forward(strip.id) == forward]

@@ -64,7 +64,7 @@ class Leader:
     reach: float
 
     def speed_along(self, heading: float) -> float:
-        """Its speed in the direction of a heading (radians), m/s; at least 0."""
+        """Return the leader's speed in the direction of a heading (radians), m/s; at least 0."""
         vx, vy, *_ = self.item.velocity
         return max(0.0, float(vy * math.cos(heading) - vx * math.sin(heading)))
 

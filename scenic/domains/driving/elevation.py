@@ -190,12 +190,12 @@ class _Cubics:
         return rows[:, 1:].T, np.maximum(ds, 0.0)
 
     def values(self, roads: Indices, s: Floats) -> Floats:
-        """Values ``(n,)`` on roads ``(n,)`` at distances ``(n,)`` along them."""
+        """Return the values ``(n,)`` on roads ``(n,)`` at distances ``(n,)`` along them."""
         (a, b, c, d), ds = self._at(roads, s)
         return np.asarray(a + ds * (b + ds * (c + ds * d)))
 
     def slopes(self, roads: Indices, s: Floats) -> Floats:
-        """Derivatives ``(n,)``; see `values`."""
+        """Return the derivatives ``(n,)`` of `values`."""
         (_, b, c, d), ds = self._at(roads, s)
         return np.asarray(b + ds * (2 * c + 3 * ds * d))
 
@@ -227,7 +227,7 @@ class _Shapes:
         self.is_zero = self._cubics.is_zero
 
     def heights(self, roads: Indices, s: Floats, t: Floats) -> tuple[Floats, Floats, Floats]:
-        """Heights ``(n,)`` on roads ``(n,)`` at distances along and to the left of them, and how they change with each."""
+        """Return heights ``(n,)`` on roads ``(n,)`` at distances along and to the left of them, and how they change with each."""
         if self.is_zero:
             nothing = np.zeros(len(s))
             return nothing, nothing, nothing

@@ -82,7 +82,7 @@ class FollowedLine:
         self.progress = 0.0
 
     def _nearest(self, low: int, high: int, x: float, y: float) -> tuple[float, float, int]:
-        """Squared distance from the nearest segment among some, the side (positive to its left), and its index."""
+        """Return the squared distance from the nearest segment among some, the side (positive to its left), and its index."""
         best, side, where = math.inf, 0.0, low
         for index, (x0, y0, dx, dy, square) in enumerate(self._segments[low:high], low):
             a, b = x - x0, y - y0

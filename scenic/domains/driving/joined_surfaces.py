@@ -115,7 +115,7 @@ class JoinedSurface(Surface):
         return self.outline.contains(points[:, 0], points[:, 1])
 
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
-        """Bodies that the elements hold together which do not pass above or below the one at their middle."""
+        """Return the mask of bodies in the union of the elements; a body that passes above or below the element at its middle is not in it."""
         inside = containment.in_polygons(body, self.outline, lanes)
         if not any(self._rivals):
             return inside

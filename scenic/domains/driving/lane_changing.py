@@ -188,7 +188,7 @@ class LaneChanger(LaneDriver):
         return bool(jolts.max() <= _JOLT)
 
     def _beside_road(self, bent: Path, path: Path, begin: int, distance: float) -> float:
-        """Metres by which the car leaves the road where it joins a path, beyond what it leaves it by now, or on the path."""
+        """Return the metres by which the car leaves the road where it joins a path, beyond those by which it leaves it now, or on the path."""
         import shapely
 
         end = bent.index_at(bent.along[begin] + distance, begin) + 1
@@ -288,7 +288,7 @@ class LaneChanger(LaneDriver):
             self._follow(plan, near, self._duration, backward=backward)
 
     def _beside(self, section: LaneSection) -> Lane | None:
-        """The lane beside a section on the side, and as far away, as the one that was asked for; ``None`` if there is none."""
+        """Return the lane beside a section on the side, and as far away, as the one that was asked for; ``None`` if there is none."""
         return next((lane for side, lane in _lanes_beside(section) if side == self._side), None)
 
     def _give_up(self) -> None:
@@ -299,7 +299,7 @@ class LaneChanger(LaneDriver):
 
 
 def _lanes_beside(section: LaneSection) -> Iterator[tuple[tuple[int, bool], Lane]]:
-    """The lanes beside a section: their numbers, 1 is the next one to the left, -1 to the right; whether they lead as it does."""
+    """Yield the lanes beside a section: their numbers, 1 is the next one to the left, -1 to the right; whether they lead as it does."""
     for step in (1, -1):
         beside = section
         for number in range(1, _MOST + 1):

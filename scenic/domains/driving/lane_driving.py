@@ -128,7 +128,7 @@ class LaneDriver(Driver):
             self._follow(*self._plan_along(lane, backward=backward), duration, backward=backward)
 
     def _plan_before(self, lane: Lane, *, backward: bool) -> "LaneDriver | None":
-        """The driver of the behavior before whose plan can be taken over; ``None`` if there is none."""
+        """Return the driver of the previous behavior if its plan can be taken over; ``None`` otherwise."""
         before = self._simulation.drivers.get(id(self._agent))
         if isinstance(before, LaneDriver) and before.lane_now() is lane and before._backward == backward:
             return before
@@ -167,7 +167,7 @@ class LaneDriver(Driver):
         self._due = self._next_due()
 
     def _next_due(self) -> float:
-        """Metres along the path from which on the next choice is due."""
+        """Return the metres along the path from which on the next choice is due."""
         speed = max(self._agent.speed, min(self._target, 40.0))
         return self._plan.path.length - self._plan.reserve(speed, self.comfort.deceleration)
 

@@ -132,7 +132,7 @@ class _Records:
         )
 
     def _halts(self, section: LaneSection) -> tuple[tuple[str, ...], tuple[str, ...], StopLine | None]:
-        """Signs and lights that hold on a section, and the line at which to stop for the first light or sign to stop."""
+        """Return the signs and lights that apply to a section, and the line at which to stop for the first light or sign to stop."""
         lane = section.lane
         if lane.is_connecting:
             return (), (), None
@@ -227,7 +227,7 @@ def _types(section: LaneSection, lane: Lane) -> tuple[str, ...]:
 
 
 def _stretch(section: LaneSection) -> tuple[float, float]:
-    """Metres along the lane at which a section begins and ends."""
+    """Return the metres along the lane at which a section begins and ends."""
     begin = 0.0
     for part in section.lane.sections:
         length = float(np.hypot(*np.diff(part.line, axis=0).T).sum())

@@ -178,7 +178,7 @@ class Levels:
         return frames
 
     def settled(self, points: Floats, headings: Floats) -> tuple[Floats, Floats]:
-        """`heights` and `frames` at once: heights ``(n,)`` and orientations ``(n, 4)``."""
+        """Return heights ``(n,)`` and orientations ``(n, 4)``, as `heights` and `frames` do, at once."""
         owner, roads = self._under(points)
         above, gradients = self.elevation.heights_and_gradients(roads, points[owner, :2])
         if (owner[1:] == owner[:-1]).any():
@@ -199,7 +199,7 @@ class Levels:
         return owner[first], roads[first]
 
     def fits(self, points: Floats, heights: Callable[[Floats], Floats]) -> Mask:
-        """At which points ``(n, 3)`` no other surface is nearer than one whose heights ``(n,)`` at points are given by a function."""
+        """Return the mask of the points ``(n, 3)`` at which no other surface is nearer than the one whose heights ``(n,)`` the function returns."""
         result = np.ones(len(points), dtype=np.bool_)
         some = np.flatnonzero(self.stacked(points[:, :2]))
         if len(some):
@@ -235,11 +235,11 @@ class Ground:
         return self.levels.elevation.heights(self.roads_at(points), points[:, :2])
 
     def frames(self, points: Floats, headings: Floats) -> Floats:
-        """Orientations ``(n, 4)`` of things on it that face headings ``(n,)``, anticlockwise from north."""
+        """Return orientations ``(n, 4)`` of things on the ground that face headings ``(n,)``, anticlockwise from north."""
         return self.levels.elevation.frames(self.roads_at(points), points[:, :2], headings)
 
     def fits(self, points: Floats) -> Mask:
-        """For which points ``(n, 3)`` on its area it is meant, and not what passes above or below."""
+        """Return the mask of the points ``(n, 3)`` on the area that belong to this ground, and not to a surface above or below."""
         return self.levels.fits(points, self.heights)
 
     def may_miss(self, points: Floats) -> Mask:
@@ -249,5 +249,5 @@ class Ground:
         return ~fits
 
     def clearances(self, points: Floats, places: Floats) -> Floats:
-        """By how many metres points ``(n, 3)`` are too high or too low to belong to it, where its nearest places ``(n, 3)`` are."""
+        """Return by how many metres points ``(n, 3)`` are too high or too low to belong to the ground, whose nearest places ``(n, 3)`` are given."""
         return np.maximum(np.abs(points[:, 2] - self.heights(places)) - _ROOM, 0.0)

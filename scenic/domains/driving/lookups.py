@@ -85,7 +85,7 @@ class Finder:
         return indices
 
     def _at_level(self, points: Floats) -> Indices:
-        """Index of the first element that holds each point ``(n, 3)`` and is at its level; else of the first that holds it."""
+        """Return the index of the first element that contains each point ``(n, 3)`` and is at its level; else of the first that contains it."""
         import shapely
 
         first_holders = self.holding(points)
@@ -270,7 +270,7 @@ class RoadDirection(TabulatedField):
         return polygons
 
     def _along(self, places: Floats, guide: Indices) -> Floats:
-        """Headings of the segments of guides that are nearest to places."""
+        """Return the headings of the segments of guides that are nearest to places."""
         starts, delta, square, heading, _, _ = self._segments
         result = np.empty(len(places))
         block = 65536

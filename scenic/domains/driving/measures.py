@@ -24,7 +24,7 @@ __all__ = [
 
 
 def _extent(thing: Any, dx: float, dy: float) -> float:
-    """Half of the extent of an object's outline along a direction."""
+    """Return half of the extent of an object's outline along a direction."""
     ahead = abs(-math.sin(thing.heading) * dx + math.cos(thing.heading) * dy)
     aside = abs(math.cos(thing.heading) * dx + math.sin(thing.heading) * dy)
     return float(thing.length * ahead + thing.width * aside) / 2

@@ -134,7 +134,7 @@ def smoothed(
 
 
 def _bends(points: Floats) -> Floats:
-    """Curvatures ``(n,)`` of a polyline without sign, averaged over three metres on either side, the largest within two metres."""
+    """Return the curvatures ``(n,)`` of a polyline without sign, averaged over three metres on either side, the largest within two metres."""
     headings = headings_of(points)
     half = 6
     padded_headings = np.pad(headings, half, mode="edge")

@@ -257,7 +257,7 @@ class _Offset:
         return np.where(ahead < 0, offset + slope * ahead + bend * ahead**2 / 2, self._curve(share))
 
     def curvatures(self, ahead: Floats) -> Floats:
-        """Curvatures ``(k,)`` that these add to those of the path at places ``(k,)`` metres ahead, before the end."""
+        """Return the curvatures ``(k,)`` that the offset adds to those of the path at places ``(k,)`` metres ahead, before the end."""
         moments, speeds, changes = self._pace.at(ahead)
         share = np.clip(moments / self.time, 0.0, 1.0)
         first, second = (self._curve.deriv(order)(share) / self.time**order for order in (1, 2))

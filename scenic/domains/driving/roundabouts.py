@@ -79,7 +79,7 @@ def _continuations(network: RoadNetwork) -> dict[int, list[Lane]]:
 
 
 def _rings(start: Lane, after: dict[int, list[Lane]], way: float) -> Iterator[tuple[Lane, ...]]:
-    """Ways from a lane back to itself that turn once round, only in the direction of circular traffic."""
+    """Yield ways from a lane back to itself that turn once round, only in the direction of circular traffic."""
     waiting: list[tuple[tuple[Lane, ...], float, float]] = [
         ((start,), _length(start), way * turned(start.line))
     ]
@@ -116,7 +116,7 @@ def _roundness(ring: tuple[Lane, ...]) -> float:
 
 
 def _circle(ring: tuple[Lane, ...]) -> tuple[tuple[float, float], float]:
-    """Middle and radius of the circle that fits lanes best: least squares on ``x^2 + y^2 = 2 a x + 2 b y + c`` (Kåsa, 1976)."""
+    """Return the middle and radius of the circle that fits lanes best: least squares on ``x^2 + y^2 = 2 a x + 2 b y + c`` (Kåsa, 1976)."""
     points = _points(ring)
     columns = np.column_stack([2 * points, np.ones(len(points))])
     (a, b, c), *_ = np.linalg.lstsq(columns, (points * points).sum(axis=1))

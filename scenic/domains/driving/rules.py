@@ -220,7 +220,7 @@ class RulesDriver(LaneDriver):
     _halted_at: _Halt | None = None
 
     def _first_line(self, speed: float, own: float, now: float) -> float | None:
-        """Metres along the path to the first line at which the car has to halt now; ``None`` if it may go on."""
+        """Return the metres along the path to the first line at which the car has to halt now; ``None`` if it may go on."""
         agent = self._agent
         front = own + agent.length / 2
         reach = 1.3 * speed * speed / (2 * self.comfort.deceleration) + 2 * speed + 12.0

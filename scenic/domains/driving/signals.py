@@ -185,7 +185,7 @@ class TrafficLights:
         return "yellow" if times.green <= into < times.green + times.yellow else "red"
 
     def cycle(self, signal: Signal) -> tuple[tuple[float, str], ...]:
-        """Seconds and colours of a light from the beginning of the simulation on, as they are repeated unless somebody sets it."""
+        """Return the seconds and colours of a light from the beginning of the simulation on; they repeat unless a program sets the light."""
         fixed_color, place = self._fixed.get(signal.uid), self._phase.get(signal.uid)
         if fixed_color is not None or place is None:
             return ((1.0, fixed_color or "off"),)

@@ -215,7 +215,7 @@ class Signal(Frozen):
         return lane.centerline.pointAlongBy(min(along, float(lane.centerline.length)))
 
     def stop_along(self, lane: "Lane") -> float | None:
-        """Metres along a lane at which to stop for the signal; ``None`` if it does not hold there."""
+        """Return the metres along a lane at which to stop for the signal; ``None`` if the signal does not apply to the lane."""
         place = self._placement_on(lane)
         if place is None:
             if any(self in maneuver.signals for maneuver in lane.maneuvers):

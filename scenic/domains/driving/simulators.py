@@ -223,15 +223,15 @@ class DrivingSimulation(Simulation):
         return pedal * float(agent.maxAcceleration if pedal > 0 else agent.maxDeceleration)
 
     def getLaneFollowingControllers(self, agent: object) -> Controllers:
-        """Controllers that keep an agent in its lane."""
+        """Return the controllers that keep an agent in its lane."""
         return self._controllers(agent, "keep", (0.2, 0.1, 0.0))
 
     def getTurningControllers(self, agent: object) -> Controllers:
-        """Controllers that take an agent round a turn."""
+        """Return the controllers that take an agent round a turn."""
         return self._controllers(agent, "turn", (0.4, 0.1, 0.0))
 
     def getLaneChangingControllers(self, agent: object) -> Controllers:
-        """Controllers that take an agent to another lane."""
+        """Return the controllers that take an agent to another lane."""
         return self._controllers(agent, "change", (0.1, 0.3, 0.0))
 
 

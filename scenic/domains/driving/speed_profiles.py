@@ -162,7 +162,7 @@ class _Way:
     def speeds(
         self, speed: float, acceleration: float, deceleration: float, window: float, allowed: Floats
     ) -> tuple[Floats, Floats]:
-        """Speeds and accelerations ``(n,)`` of a car that brakes by a deceleration, which changes over seconds.
+        """Return speeds and accelerations ``(n,)`` of a car that brakes by a deceleration, which changes over seconds.
 
         The squared speeds ``(n,)`` that the limits allow are those of `_allowed` for half of the window.
         """
@@ -201,7 +201,7 @@ def _going_on(
 
 
 def _allowed(along: Floats, limits: Floats, time: float, *, stops: bool) -> Floats:
-    """Squared speeds that keep limits for seconds before and after each point."""
+    """Return squared speeds that keep limits for seconds before and after each point."""
     squares: Floats = _eroded(along, limits, time) ** 2
     if stops:
         squares[-1] = 0.0
@@ -237,7 +237,7 @@ def _slow_before(
 
 
 def _backward(squares: Floats, falls: Floats) -> Floats:
-    """Squared speeds that fall at most by given amounts ``(n - 1,)`` from each point to the next, within limits ``(n,)``."""
+    """Return squared speeds that fall at most by given amounts ``(n - 1,)`` from each point to the next, within limits ``(n,)``."""
     down = np.concatenate([[0.0], np.cumsum(falls)])
     slowest: Floats = np.minimum.accumulate((squares + down)[::-1])[::-1] - down
     return slowest

@@ -344,7 +344,7 @@ def _cubics(rows: Iterable[Sequence[float]]) -> tuple[Cubic, ...]:
 
 
 def _binary(name: str, geometries: Sequence[object]) -> Arrays:
-    """Geometries as two arrays: their well-known binary end to end, and the lengths of the parts."""
+    """Encode geometries as two arrays: their well-known binary end to end, and the lengths of the parts."""
     import shapely
 
     parts = [shapely.to_wkb(geometry) for geometry in geometries]

@@ -30,7 +30,7 @@ Floats = NDArray[np.float64]
 
 
 def frames_of(headings: Floats) -> Floats:
-    """Orientations ``(n, 4)`` that face headings ``(n,)``, anticlockwise from north, on level ground."""
+    """Return orientations ``(n, 4)`` that face headings ``(n,)``, anticlockwise from north, on level ground."""
     frames = np.zeros((len(headings), 4))
     frames[:, 2], frames[:, 3] = np.sin(headings / 2), np.cos(headings / 2)
     return frames
@@ -104,7 +104,7 @@ class Surface(PolygonalRegion):
         return flat if self.ground is None else Flat(flat.geometries, None)
 
     def distances(self, points: Points, *columns: Column) -> Column:
-        """As seen from above, unless the point belongs to another level: then the height between counts, too."""
+        """Return the distances as seen from above; for a point on another level, the height between counts, too."""
         if self.ground is None:
             return super().distances(points, *columns)
         away = self.beside(points, *columns)
@@ -119,7 +119,7 @@ class Surface(PolygonalRegion):
         return Vector.of(self._raised(np.array([tuple(place)]))[0].tolist())
 
     def project(self, point: Any, direction: Any) -> tuple[Any, Any]:
-        """Vertically onto the surface; a point beside it lands nowhere."""
+        """Project a point vertically onto the surface; a point beside it lands nowhere."""
         if self.ground is None:
             return super().project(point, direction)
         place = apply(_LAND, to_vector(point), payload=self)
@@ -216,7 +216,7 @@ class GroundedLine(Frozen, PolylineRegion):
         return self._on_ground(start), self._on_ground(end)
 
     def signed_distances(self, points: Points) -> NDArray[np.float64]:
-        """Distances as seen from above, see `PolylineRegion.signed_distances`."""
+        """Return distances as seen from above, see `PolylineRegion.signed_distances`."""
         flat = np.array(points)
         flat[:, 2] = 0
         return super().signed_distances(flat)

@@ -99,7 +99,7 @@ def _bend(part: Floats, line: Floats, sharpest: float) -> Floats:
 
 
 def _normals(points: Floats) -> Floats:
-    """Unit vectors ``(n, 2)`` to the left of a curve."""
+    """Return unit vectors ``(n, 2)`` to the left of a curve."""
     along = np.gradient(points, axis=0)
     along /= np.hypot(*along.T)[:, None]
     return np.column_stack([-along[:, 1], along[:, 0]])

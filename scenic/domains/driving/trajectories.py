@@ -170,7 +170,7 @@ def _ways_from(lane: Lane) -> Sequence[Maneuver]:
 
 
 def _taken_by(way: Maneuver) -> tuple[Lane, ...]:
-    """The lanes of a maneuver after the one in which it begins."""
+    """Return the lanes of a maneuver after the one in which it begins."""
     return tuple(lane for lane in (way.connectingLane, way.endLane) if lane is not None)
 
 

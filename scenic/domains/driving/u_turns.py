@@ -157,7 +157,7 @@ class UTurner:
         return self._curvature
 
     def _free_distance(self, lock: float) -> float:
-        """Metres that the car can drive with its wheels at the lock before a corner leaves the road; at most `_LOOK`."""
+        """Return the metres that the car can drive with its wheels at the lock before a corner leaves the road; at most `_LOOK`."""
         x, y, *_ = self._agent.position
         heading = self._agent.heading
         back = self._simulation.pivot_of(self._agent)

@@ -81,6 +81,6 @@ class DrivingWorkspace(Workspace):
         return {signal.uid: simulation.signalState(signal) for signal in self._signals}
 
     def scenicToSchematicCoords(self, coords: Any) -> tuple[float, float]:
-        """Coordinates of drawings: x and y."""
+        """Return the coordinates of drawings: x and y."""
         x, y, *_ = coords
         return x, y

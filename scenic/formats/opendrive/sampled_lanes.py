@@ -170,7 +170,7 @@ def _jumps(cubics: Sequence[Cubic], least: float) -> list[float]:
 
 
 def _offsets(road: Road, section: LaneSection, s: Floats, tell: Callable[[MapProblem], None]) -> Floats:
-    """Offsets of all boundaries from the reference line, ``(m + 1, n)``, from left to right."""
+    """Return the offsets of all boundaries from the reference line, ``(m + 1, n)``, from left to right."""
     middle = cubic_values(road.lane_offset, s)
     ds = s - section.s
     left = [lane for lane in section.lanes if lane.id > 0]

@@ -312,7 +312,7 @@ def _faults(
 
 
 def _repeated_ids(root: Element) -> Iterator[tuple[tuple[Element, str], Fault]]:
-    """Signals, objects and connections whose id another one of their kind has."""
+    """Yield the signals, objects and connections whose id another one of their kind has."""
     for paths in (("signals", "signal"), ("objects", "object")):
         outer, tag = paths
         identifiers: set[str] = set()

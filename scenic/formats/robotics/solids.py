@@ -242,7 +242,7 @@ def _coefficient(thing: SceneObject, name: str) -> float | None:
 
 
 def _inertia(thing: SceneObject, size: Triple) -> Inertia:
-    """Mass properties of the whole mesh at its size, of one density."""
+    """Return mass properties of the whole mesh at its size, of one density."""
     mesh: Any = thing.shape.mesh
     volume, center, moments = mesh.derived(_moments) if hasattr(mesh, "derived") else _moments(mesh)
     scale = np.array(size)
@@ -269,7 +269,7 @@ def _given_mass(thing: SceneObject, volume: float) -> float:
 
 
 def _moments(mesh: Any) -> tuple[float, Array, Array]:
-    """Volume of a closed mesh, its centre of mass ``(3,)``, and second moments about it ``(3, 3)``, divided by the volume.
+    """Return the volume of a closed mesh, its centre of mass ``(3,)``, and second moments about it ``(3, 3)``, divided by the volume.
 
     A sum over the tetrahedra between the origin and each face (F. Tonon, "Explicit exact formulas for the 3-D tetrahedron inertia
     tensor", 2004).

@@ -180,8 +180,8 @@ class _Writer:
         for camera, label in zip(
             solid.cameras, identifiers(camera.name for camera in solid.cameras), strict=True
         ):
-            taken = label in ("geometry", "collision")
-            self._camera(solid, camera, f"{path}/{'camera_' if taken else ''}{label}", Gf)
+            is_name_taken = label in ("geometry", "collision")
+            self._camera(solid, camera, f"{path}/{'camera_' if is_name_taken else ''}{label}", Gf)
 
     def _mass(self, prim: object, solid: Solid) -> None:
         from pxr import Gf, UsdPhysics
@@ -357,14 +357,14 @@ def _turn_from_up(x: float, y: float, z: float) -> Four:
 
 
 def _label(prim: object, kind: str, text: str) -> None:
-    """A semantic label; versions of the library before 24.11 have no schema of labels."""
+    """Add a semantic label; versions of the library before 24.11 have no schema of labels."""
     from pxr import UsdSemantics
 
     UsdSemantics.LabelsAPI.Apply(prim, kind).CreateLabelsAttr([text])
 
 
 def _custom(solid: Solid) -> dict[str, Any]:
-    """Properties of an object that are numbers, texts or vectors, as data of its prim."""
+    """Return the properties of an object that are numbers, texts or vectors, as data of its prim."""
     found: dict[str, Any] = {"class": solid.class_name, "index": solid.index}
     for name, value in solid.thing.properties.items():
         plain = _plain(value)

@@ -127,7 +127,7 @@ def _tokens(session: Session, document: Document) -> Sequence[SemanticToken]:
 
 
 def _encoded(document: Document, tokens: Sequence[SemanticToken]) -> list[int]:
-    """Tokens as the protocol has them: five numbers each, places relative to the token before."""
+    """Encode tokens as the protocol does: five numbers each, places relative to the token before."""
     data: list[int] = []
     last_line = last_start = 0
     lines, rows = document.lines, document.snapshot.source.lines

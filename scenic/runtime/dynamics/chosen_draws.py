@@ -41,7 +41,7 @@ class _Driven:
         return self._rest.draw(place, what) if math.isnan(number) else number
 
     def word(self, place: int) -> int:
-        """64 bits at an address."""
+        """Return 64 random bits at an address."""
         return self._rest.word(place)
 
 
@@ -69,7 +69,7 @@ class _Kept:
         return self._rest.draw(place, what)
 
     def word(self, place: int) -> int:
-        """64 bits at an address."""
+        """Return 64 random bits at an address."""
         return self._rest.word(place)
 
 

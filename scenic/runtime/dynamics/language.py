@@ -113,7 +113,7 @@ class Dynamics:
     # Statements that take time; `instance` is what runs
 
     def take(self, instance: Invocable, *actions: Any) -> Yielded:
-        """``take``, and ``wait`` as taking nothing: what to yield."""
+        """Return what ``take`` yields, or ``wait``, which takes nothing."""
         instance._activation.direct = True
         if len(actions) == 1 and isinstance(actions[0], list | tuple):
             actions = tuple(actions[0])
@@ -122,26 +122,26 @@ class Dynamics:
         return actions
 
     def terminate(self, instance: Invocable, *, simulation: bool) -> Yielded:
-        """``terminate``: what to yield."""
+        """Return what ``terminate`` yields."""
         instance._activation.direct = True
         return Termination(simulation=simulation, span=here())
 
     def do(
         self, instance: Invocable, targets: Sequence[object], limit: object = None, unit: str | None = None
     ) -> Any:
-        """``do``: what to delegate to."""
+        """Return what ``do`` delegates to."""
         return statements.do(instance._activation, targets, limit, unit)
 
     def wait(self, instance: Invocable, limit: object, unit: str) -> Any:
-        """``wait for`` and ``wait until``: what to delegate to."""
+        """Return what ``wait for`` and ``wait until`` delegate to."""
         return statements.wait(instance._activation, limit, unit)
 
     def do_choose(self, instance: Invocable, *targets: Any) -> Any:
-        """``do choose``: what to delegate to."""
+        """Return what ``do choose`` delegates to."""
         return statements.choose(instance._activation, targets)
 
     def do_shuffle(self, instance: Invocable, *targets: Any) -> Any:
-        """``do shuffle``: what to delegate to."""
+        """Return what ``do shuffle`` delegates to."""
         return statements.shuffle(instance._activation, targets)
 
     def interruptible(
@@ -150,11 +150,11 @@ class Dynamics:
         body: Callable[[], Any],
         clauses: Sequence[tuple[Callable[[], Any], Callable[[], Any]]],
     ) -> Any:
-        """``try-interrupt``: what to delegate to."""
+        """Return what ``try-interrupt`` delegates to."""
         return statements.interruptible(instance._activation, body, clauses)
 
     def leave(self, value: object) -> statements.BlockEnding:
-        """``return value`` in a block of ``try-interrupt``."""
+        """Return how ``return value`` ends a block of ``try-interrupt``."""
         return statements.BlockEnding("return", value)
 
     def returned(self, outcome: statements.BlockEnding | None) -> bool:
@@ -162,7 +162,7 @@ class Dynamics:
         return outcome is not None and outcome.way == "return"
 
     def margin(self, symbols: Sequence[str], operands: Sequence[object]) -> float | None:
-        """By how much ``a < b <= c`` or the like holds, the least of its parts; ``None`` where that is not known."""
+        """Return by how much ``a < b <= c`` or the like holds, the least of its parts; ``None`` where that is not known."""
         from scenic.runtime.dynamics.margins import margin
 
         return margin(symbols, operands)
@@ -190,7 +190,7 @@ class Dynamics:
     # Statements that do not
 
     def override(self, target: object, *specifiers: Any) -> None:
-        """``override``."""
+        """Execute ``override``."""
         run = self._run
         if run is None:
             from scenic.runtime.dynamics.overriding import override_before
@@ -200,7 +200,7 @@ class Dynamics:
             run.current.overrides.apply(target, specifiers)
 
     def require_monitor(self, monitor: object, *, name: object = None) -> None:
-        """``require monitor``."""
+        """Execute ``require monitor``."""
         if not isinstance(monitor, Monitor):
             from scenic.runtime.dynamics.scenarios import not_a_monitor
 
@@ -214,12 +214,12 @@ class Dynamics:
     def terminate_when(
         self, concrete: Callable[..., Any], captured: Sequence[object], *, simulation: bool, name: object
     ) -> None:
-        """``terminate when``."""
+        """Execute ``terminate when``."""
         label = label_of(name) or _numbered("termination condition")
         self._declared.ends.append(End(Closure(concrete, captured), label, simulation))
 
     def terminate_after(self, value: object, unit: str) -> None:
-        """``terminate after``."""
+        """Execute ``terminate after``."""
         if not is_number(value) or isinstance(value, bool):
             raise ScenicTypeError(
                 f"`terminate after`: expected a fixed number of {unit}, not {describe(value)}",
@@ -239,7 +239,7 @@ class Dynamics:
         after: tuple[Any, str] | None = None,
         to: object = None,
     ) -> None:
-        """``record``."""
+        """Execute ``record``."""
         from scenic.runtime.dynamics.recording import check_duration, check_target
 
         span = here()
@@ -258,7 +258,7 @@ class Dynamics:
         return self._program.declared if run is None else run.current.declared
 
     def _require_now(self, requirement: Required, chance: float) -> None:
-        """``require`` while values are definite: a temporal condition is followed from now on, any other is checked immediately."""
+        """Execute ``require`` while values are definite: a temporal condition is followed from now on, any other is checked immediately."""
         run, context = self._run, self._context
         if run is not None and is_temporal(requirement.formula):
             run.current.require(requirement)

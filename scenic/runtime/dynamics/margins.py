@@ -78,7 +78,7 @@ def _equality(left: object, right: object) -> float | None:
 
 
 def _direction(words: str, place: object, base: object) -> float | None:
-    """By which angle, in radians, the base could turn before the place leaves the direction."""
+    """Return the angle, in radians, by which the base could turn before the place leaves the direction."""
     if not isinstance(base, OrientedPoint):
         return None
     bearing = normal_angle(base.position.azimuthTo(to_vector(place)) - base.heading)
@@ -161,7 +161,7 @@ def _overlap(left: object, right: object) -> float | None:
 
 
 def _sight(observer: object, target: object) -> float | None:
-    """By how much an observer sees a point or an object past those of the simulation; unknown in the plane."""
+    """Return by how much an observer sees a point or an object past those of the simulation; unknown in the plane."""
     context = current.get()
     if context is None or context.mode_2d:
         return None

@@ -139,7 +139,7 @@ class _Margins(dict[int, float]):
 
 
 def margin(atom: Any) -> float:
-    """By how much an atom holds: a distance where there is one, else an infinity."""
+    """Return by how much an atom holds: a distance where there is one, else an infinity."""
     if atom.margin is not None:
         value = atom.margin(*atom.captured)
         if value is not None and not math.isnan(value):

@@ -241,7 +241,7 @@ class Run:
     # Objects and agents
 
     def create(self, instance: object) -> None:
-        """A new instance of the running program."""
+        """Create a new instance of the running program."""
         instance.__dict__["_sample"] = self.copies  # Members read it where code of a simulator asks for them.
         scenario = self._creating
         if isinstance(instance, Object) and not instance.present:

@@ -93,7 +93,7 @@ def begin(owner: Running, target: object) -> Running:
 
 
 def do(owner: Running, targets: Sequence[object], limit: object = None, unit: str | None = None) -> Steps:
-    """``do``, with ``for`` or ``until``."""
+    """Execute ``do``, with ``for`` or ``until``."""
     stop = _stop_test(owner, limit, unit)
     activations: list[Running] = []
     try:
@@ -145,7 +145,7 @@ def _joined(outputs: Sequence[Yielded]) -> Yielded:
 
 
 def wait(owner: Running, limit: object, unit: str) -> Steps:
-    """``wait for`` and ``wait until``."""
+    """Execute ``wait for`` and ``wait until``."""
     stop = _stop_test(owner, limit, unit)
     assert stop is not None
     while not stop():
@@ -155,14 +155,14 @@ def wait(owner: Running, limit: object, unit: str) -> Steps:
 
 
 def choose(owner: Running, targets: Sequence[object]) -> Steps:
-    """``do choose``."""
+    """Execute ``do choose``."""
     options = _weighted(targets, "choose")
     index = _drawn(owner, options, "choose")
     yield from do(owner, [options[index][0]])
 
 
 def shuffle(owner: Running, targets: Sequence[object]) -> Steps:
-    """``do shuffle``."""
+    """Execute ``do shuffle``."""
     options = _weighted(targets, "shuffle")
     while options:
         target, _ = options.pop(_drawn(owner, options, "shuffle"))
@@ -206,7 +206,7 @@ def _drawn(owner: Running, options: Sequence[tuple[Any, float]], what: str) -> i
 def interruptible(
     owner: Running, body: Callable[[], Any], clauses: Sequence[tuple[Callable[[], Any], Callable[[], Any]]]
 ) -> Generator[Yielded, None, BlockEnding | None]:
-    """``try-interrupt``: the body, and conditions with their handlers in program order; returns how it ended."""
+    """Execute ``try-interrupt``: the body, and conditions with their handlers in program order; returns how it ended."""
     run = owner.run
     blocks: list[Any] = [None] * len(clauses)  # The handlers that have begun.
     main: Any = None

@@ -38,7 +38,7 @@ class Source(Protocol):
         """The number at an address of 64 bits."""
 
     def word(self, place: int) -> int:
-        """64 bits at an address."""
+        """Return 64 random bits at an address."""
 
 
 class Seeded:
@@ -58,7 +58,7 @@ class Seeded:
         return ((self.word(place) >> 12) + 0.5) * 2.0**-52
 
     def word(self, place: int) -> int:
-        """64 bits at an address."""
+        """Return 64 random bits at an address."""
         digest = hashlib.blake2b(place.to_bytes(8, "little"), digest_size=8, key=self.key).digest()
         return int.from_bytes(digest, "little")
 
@@ -77,7 +77,7 @@ class Recorded:
         self._missing = missing
 
     def word(self, place: int) -> int:
-        """64 bits at an address."""
+        """Return 64 random bits at an address."""
         return self._otherwise.word(place)
 
     def draw(self, place: int, what: Draw) -> float:
@@ -146,5 +146,5 @@ class Draws:
         self._counts.pop(scenario, None)
 
     def seed(self, purpose: str) -> int:
-        """64 bits for something else than a distribution, not among what was drawn."""
+        """Return 64 random bits for other purposes than a distribution; they are not among the recorded draws."""
         return self._source.word(address(purpose))

@@ -216,7 +216,7 @@ def reader(types: Sequence[Type], label: str) -> Read:
 
 
 def _reading_places(types: Sequence[Type], label: str) -> Read:
-    """`reader` for a vector, or a vector or a region; points are the most frequent ones."""
+    """Return a `reader` for vectors, or for vectors and regions, which reads points first, since they are the most frequent."""
     takes_regions = REGION in types
 
     def read(value: object) -> Any:

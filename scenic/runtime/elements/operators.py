@@ -63,7 +63,7 @@ def _apparent_heading(target: Any, viewpoint: object) -> Any:
 
 
 def _apparent_heading_to(target: object, viewer: Any) -> Any:
-    """From -pi, exclusive, to pi."""
+    """Return the apparent heading, from -pi (exclusive) to pi."""
     bearing = _normal(_minus(_azimuth(_minus(target, viewer.position)), viewer.heading))
     return operate("if", operate("greater", bearing, -math.pi), bearing, math.pi)
 
@@ -149,7 +149,7 @@ IMPLEMENTATIONS: Mapping[str, Callable[..., Any]] = MappingProxyType(
 
 
 def _relative_to(ego: Ego, value: Any, frame: Any) -> Any:
-    """Section 7.1: the first row of the table that fits."""
+    """Evaluate `relative to` by the first row of the table in section 7.1 that fits."""
     if type(value) is Vector and type(frame) is Vector:
         return value + frame
     if type(frame) is Vector and isinstance(value, OrientedPoint):

@@ -203,7 +203,7 @@ def _check(cls: type[Point], specifiers: Sequence[Specifier], properties: Mappin
 def _claims(
     specifiers: Sequence[Specifier], properties: Mapping[str, Property]
 ) -> tuple[dict[str, Specifier], dict[str, Specifier]]:
-    """By property: the specifier, or the default, that provides it, and the one that modifies it."""
+    """Return by property the specifier, or the default, that provides it, and the one that modifies it."""
     claims: dict[str, Specifier] = {}
     modifiers: dict[str, Specifier] = {}
     for specifier in specifiers:
@@ -392,7 +392,7 @@ def _topological(
     claims: Mapping[str, Specifier],
     modifiers: Mapping[str, Specifier],
 ) -> tuple[Specifier, ...]:
-    """Providers before the specifiers that read them, by depth-first search in program order."""
+    """Order providers before the specifiers that read them, by depth-first search in program order."""
     order: list[Specifier] = []
     ordered_specifiers: set[Specifier] = set()
     active: list[Specifier] = []

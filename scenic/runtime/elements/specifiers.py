@@ -339,7 +339,7 @@ def scalar_or_vector(value: Any, what: str, *, axis: int) -> Any:
 
 
 def _directional(name: str, sign: int) -> Callable[..., Specifier]:
-    """Section 6.4: next to something, along the axis of its frame whose extent is the one declared."""
+    """Return a specifier that places an object next to something (section 6.4), along the axis of its frame whose extent is declared."""
     (extent,) = SPECIFIERS[name].needs
     axis = ("width", "length", "height").index(extent)
     beside_vector = SPECIFIERS[name].needs_beside_vector

@@ -134,5 +134,5 @@ def _take(part: Floats, entries: Indices) -> Floats:
 
 
 def _spread(rows: Floats, points: Floats) -> Floats:
-    """Rows ``(n | 1, 3)`` shaped to broadcast against ``points``."""
+    """Reshape rows ``(n | 1, 3)`` to broadcast against ``points``."""
     return rows.reshape(len(rows), *(1,) * (points.ndim - 2), 3)

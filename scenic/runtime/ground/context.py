@@ -264,7 +264,7 @@ def warn(
 
 
 def _caller() -> tuple[str, int]:
-    """File and line of whoever called this package."""
+    """Return the file and line that called this package."""
     frame: FrameType | None = sys._getframe(1)
     while frame is not None and frame.f_code.co_filename.startswith(_PACKAGE):
         frame = frame.f_back

@@ -100,7 +100,7 @@ def is_built_in(mutators: Iterable[object]) -> bool:
 
 
 def _noise(deviations: Any, scale: object) -> list[Any]:
-    """Normal noise for each of three axes; none is drawn where there is certainly none."""
+    """Return normal noise for each of three axes; none is drawn where there is certainly none."""
     noise = []
     for deviation in deviations:
         spread = operate("multiply", deviation, to_scalar(scale))

@@ -232,7 +232,7 @@ def _per_drawn(
     kind: Kind = Kind.OTHER,
     together: Callable[[list[Any]], list[Any] | None] | None = None,
 ) -> Callable[[str, Any], Any]:
-    """Normalises each option of a random choice, and what has no kind of its own when it is drawn.
+    """Return a function that normalises each option of a random choice, and values whose kind shows only when they are drawn.
 
     ``together`` normalises a list of drawn values, or gives ``None`` where they have to be looked at one by one.
     """
@@ -320,7 +320,7 @@ def _colour(_name: str, value: object) -> Any:
 
 
 def _colours(values: list[Any]) -> list[Any] | None:
-    """Colours as `_colour` gives them, where all of them are tuples of three or four numbers."""
+    """Return colours as `_colour` does, where all of them are tuples of three or four numbers; ``None`` otherwise."""
     if not all(issubclass(cls, tuple) for cls in set(map(type, values))):
         return None
     sizes = set(map(len, values))

@@ -486,7 +486,7 @@ class Loader:
         fromlist: Sequence[str] | None = (),
         level: int = 0,
     ) -> Any:
-        """``__import__`` of generated modules: Scenic modules first, then Python's."""
+        """Import for generated modules as ``__import__`` does: Scenic modules first, then Python's."""
         if level:
             base = importer.package.rsplit(".", level - 1)[0] if level > 1 else importer.package
             name = f"{base}.{name}".strip(".") if base else name

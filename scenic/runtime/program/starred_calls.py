@@ -55,7 +55,7 @@ def _spread_values(
     values: Sequence[object],
     keywords: Mapping[str, object],
 ) -> Any:
-    """`spread`, of values that no longer depend on the object being specified."""
+    """Evaluate `spread` for values that no longer depend on the object being specified."""
     return spread(function, tuple(zip(flags, values, strict=True)), keywords)
 
 

@@ -93,16 +93,16 @@ def allowed(function: Callable[..., object], combinations: Iterable[Sequence[obj
 def _check_signature(function: Callable[..., object], sizes: Sequence[int]) -> None:
     """Refuse combinations of more or fewer values than a function takes."""
     try:
-        taken = signature(function)
+        parameters = signature(function)
     except (TypeError, ValueError):  # functions of C tell nothing
         return
     for size in sizes:
         try:
-            taken.bind(*range(size))
+            parameters.bind(*range(size))
         except TypeError:
             name = getattr(function, "__name__", "function")
             raise InvalidScenarioError(
-                f"the combinations that are allowed have {_values(size)}, which {name}{taken} does not take",
+                f"the combinations that are allowed have {_values(size)}, which {name}{parameters} does not take",
                 help=_MEND,
             ) from None
 

@@ -272,7 +272,7 @@ _PLAIN = frozenset({*_NUMBERS_AND_TEXT, bool, type(None), CodeType, Vector, Orie
 
 
 def _boxed_constants(root: Node, seen: dict[int, Any]) -> list[Any]:
-    """Python objects among the constants below a node: a choice among instances needs the instances' nodes.
+    """List the Python objects among the constants below a node: a choice among instances needs the instances' nodes.
 
     So does a call of the program's code, which may return what it was given.
     """

@@ -94,7 +94,7 @@ class RegionChoice(VaryingRegion):
         return region
 
     def _each(self, columns: Sequence[_Part]) -> Iterator[tuple[Region, Sequence[_Part]]]:
-        """Each option with what belongs to its parameters."""
+        """Yield each option with the parts that belong to its parameters."""
         first = 1
         for option in self.options:
             yield option, columns[first : first + len(option.parameters)]
@@ -164,7 +164,7 @@ class RegionChoice(VaryingRegion):
 
     @staticmethod
     def _hull(parameters: Sequence[Bounds | None], boxes: Sequence[Bounds | None]) -> Bounds | None:
-        """Bounds ``(m | 1, 3)`` of the options that the index may draw, from those of each; ``None`` where one is not known."""
+        """Return bounds ``(m | 1, 3)`` of the options that the index may draw, from those of each; ``None`` where one is not known."""
         whole, index = hull_of(boxes), parameters[0]
         definite_boxes = [box for box in boxes if box is not None and len(box.lower) == 1]
         if whole is None or index is None or len(definite_boxes) < len(boxes):
@@ -184,7 +184,7 @@ class RegionChoice(VaryingRegion):
 
 
 def _rows(bounds: Bounds, rows: NDArray[np.intp]) -> Bounds:
-    """Bounds of some boxes."""
+    """Return the bounds of the boxes with some numbers."""
     return bounds if len(bounds.lower) == 1 else Bounds(bounds.lower[rows], bounds.upper[rows])
 
 

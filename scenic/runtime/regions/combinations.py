@@ -245,7 +245,7 @@ class UnionRegion(Composite):
         return inside
 
     def _hold_vertices(self, body: Body, lanes: NDArray[np.intp], columns: Sequence[Column]) -> Mask:
-        """In which of some lanes the first vertices of the body lie in members."""
+        """Return the mask of those of some lanes in which the first vertices of the body lie in members."""
         is_inside = np.ones(len(lanes), dtype=np.bool_)
         rows = [column if len(column) == 1 else column[lanes] for column in columns]
         part = body if len(body) == 1 else body.take(lanes)

@@ -152,7 +152,7 @@ class Composite(Region):
         """Return a mask of the lanes in which the members do not rule out that a body meets the region, ``(lanes | 1,)``."""
 
     def _meets_surely(self, body: Body, lanes: NDArray[np.intp], columns: Sequence[Column]) -> Mask:
-        """In which of some lanes, whose columns these are, a known point of the body lies in the region."""
+        """Return the mask of those of some lanes, whose columns these are, in which a known point of the body lies in the region."""
         if not is_flat(self):
             is_inside: Mask = np.zeros(len(lanes), dtype=np.bool_)
             for points in _known_points(body, lanes):
@@ -173,7 +173,7 @@ class Composite(Region):
         return is_inside & boxes
 
     def _meets_solidly(self, body: Body, lanes: NDArray[np.intp], columns: Sequence[Column]) -> Mask:
-        """In which of some lanes what is left of solids meets the body.
+        """Return the mask of those of some lanes in which what is left of solids meets the body.
 
         Bodies and members that are not convex, or have many faces, are combined exactly, one lane after the other.
         """
@@ -233,7 +233,7 @@ class Composite(Region):
     def _boxes_of_draws(
         self, sources: Sequence[int], columns: Sequence[Column]
     ) -> tuple[Points, Points] | None:
-        """Boxes ``(n | 1, 3)`` outside of which no draw is kept; ``None`` where nothing is known."""
+        """Return boxes ``(n | 1, 3)`` outside of which no draw is accepted; ``None`` where nothing is known."""
         return None
 
     def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:

@@ -501,7 +501,7 @@ def _values(call: Call, *columns: Column) -> Column:
 
 
 def _turns(values: Sequence[Any], failed: Mask) -> tuple[NDArray[np.float64], Exception | None]:
-    """Values of a field as quaternions ``(n, 4)``; marks the lanes whose value is none, and gives the first error."""
+    """Convert values of a field to quaternions ``(n, 4)``; lanes whose value is not an orientation are marked, and the first error is returned."""
     if all(type(value) in _HEADINGS for value in values):
         yaw = np.array([0.0 if value is _ABSENT else float(value) for value in values])
         return quaternions.from_euler(yaw, np.zeros(1), np.zeros(1)), None

@@ -195,7 +195,7 @@ def _inradius(
 
 
 def _ball(boxes: Bounds) -> tuple[Floats, Floats, Mask]:
-    """Centres ``(m, 3)`` and radii ``(m,)`` of balls around boxes, and which boxes are bounded."""
+    """Return centres ``(m, 3)`` and radii ``(m,)`` of balls around boxes, and the mask of the boxes that are bounded."""
     centre, half = (boxes.lower + boxes.upper) / 2, (boxes.upper - boxes.lower) / 2
     radius = np.sqrt((half * half).sum(axis=1))
     known = np.isfinite(centre).all(axis=1) & np.isfinite(radius)

@@ -100,7 +100,7 @@ def _sees_at_once(
     orientation: Parts,
     size: Triple,
 ) -> bool:
-    """As `_sees`, of plain floats; equal to it in every bit."""
+    """Return what `_sees` does for plain floats, equal to it in every bit."""
     corners = []
     for right, front in _CORNERS:
         x, y, _ = quaternions.turned(orientation, (size[0] * right, size[1] * front, 0.0))

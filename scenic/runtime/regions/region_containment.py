@@ -23,7 +23,7 @@ _SLACK: Final = 1e-9
 
 
 def _disc_holds_flat(disc: CircularRegion, other: Region, tolerance: float) -> bool | None:
-    """Exactly, not by the polygon of the disc, which a sector of the same circle sticks out of."""
+    """Return whether a disc contains another region, exactly: a sector of the same circle sticks out of the disc's polygon."""
     import shapely
 
     flat = flat_of(other)

@@ -93,7 +93,7 @@ class SectorRegion(PlanarRegion):
         return np.asarray(np.minimum(columns[3], 2 * math.pi) / 2 * columns[1] ** 2)
 
     def _polar(self, points: Points, center: Column, heading: Column) -> tuple[Column, Column]:
-        """Distance from the centre, and angle from the middle of the sector, at most pi."""
+        """Return the distance from the centre, and the angle from the middle of the sector, at most pi."""
         dx, dy = points[:, 0] - center[:, 0], points[:, 1] - center[:, 1]
         turned = np.arctan2(-dx, dy) - heading
         return np.hypot(dx, dy), np.abs(np.remainder(turned + math.pi, 2 * math.pi) - math.pi)

@@ -149,8 +149,8 @@ def _chance_to_collide(
         batch = attempts_at_kind(engine, kind, pending, scenes, member, np.ones(count, dtype=np.int64))
         if len(batch.rows):
             bodies.add([item.body(batch) for item in kind.objects], kind.numbers[member[batch.rows]])
-    pairs, met = bodies.pairs(may_meet)
-    return (met + 0.5) / (pairs + 1)
+    pairs, collisions = bodies.pairs(may_meet)
+    return (collisions + 0.5) / (pairs + 1)
 
 
 def _groups(

@@ -209,7 +209,7 @@ class _Sampler:
     def _run(
         self, random: np.random.Generator, lanes: int, inactive: frozenset[int]
     ) -> tuple["_State", Approximation]:
-        """So many lanes in which these soft requirements need not hold."""
+        """Sample a number of lanes in which the soft requirements ``inactive`` need not hold."""
         plan = self._plan(inactive)
         state = _State(self._reads, lanes)
         roots, pace = np.arange(lanes), _Steps()
@@ -451,14 +451,14 @@ class _State:
             self._words[place] = np.concatenate([part._words[place] for part in parts])
 
     def put(self, lanes: NDArray[np.intp], part: "_State") -> None:
-        """Lanes as they are in another state, one after the other."""
+        """Copy lanes from another state, one after the other."""
         for place, column in part._numbers.items():
             self._numbers[place][lanes] = column
         for place, words in part._words.items():
             self._words[place][lanes] = words
 
     def put_block(self, lanes: NDArray[np.intp], other: "_State", block: _Block) -> None:
-        """A block of some lanes as it is in another state of the same lanes."""
+        """Copy a block of some lanes from another state of the same lanes."""
         for place in block.numbers:
             column = self._numbers[place].copy()
             column[lanes] = other._numbers[place][lanes]

@@ -110,7 +110,7 @@ def _only_part(
 
 
 def _any_rejected(batch: Batch, nodes: Sequence[Node]) -> Mask | None:
-    """Lanes in which one of some nodes rejects the sample; ``None`` if there are none."""
+    """Return the mask of the lanes in which one of some nodes rejects the sample; ``None`` if there are none."""
     marks = [status == REJECTED for node in nodes if (status := batch.status(node)) is not None]
     return np.any(marks, axis=0) if marks else None
 
@@ -223,7 +223,7 @@ class ObjectNodes:
 
 
 def _crowd(batch: Batch, objects: Sequence[ObjectNodes]) -> Crowd:
-    """Objects of fixed shapes as stacked columns, without a body for each."""
+    """Return the crowd of objects of fixed shapes as stacked columns, without a body for each."""
     count = len(objects)
     number = {
         mesh: index for index, mesh in enumerate(dict.fromkeys(item.shape.value.mesh for item in objects))
@@ -237,7 +237,7 @@ def _crowd(batch: Batch, objects: Sequence[ObjectNodes]) -> Crowd:
 
 
 def _rows(columns: Column, count: int) -> Column:
-    """Columns (members or 1, lanes or 1, ...) as rows one member after the other; what is the same everywhere as one."""
+    """Reshape columns (members or 1, lanes or 1, ...) to rows, one member after the other; a column that is the same everywhere becomes one row."""
     if columns.shape[0] == 1 and columns.shape[1] > 1:
         columns = np.broadcast_to(columns, (count, *columns.shape[1:]))
     return columns.reshape(-1, *columns.shape[2:])

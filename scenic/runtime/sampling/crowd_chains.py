@@ -96,13 +96,13 @@ class _Chains:
             fits[start:stop] = self._insert(start, stop)
             self._sweep(stop)
         sweeps = _sweeps(self._apart)
-        moved = np.zeros(self._now.shape, dtype=np.bool_)
+        has_moved = np.zeros(self._now.shape, dtype=np.bool_)
         for _ in range(sweeps):
-            moved |= self._sweep(leaves)
+            has_moved |= self._sweep(leaves)
         attempts = np.zeros(self._now.shape, dtype=np.int64)
         attempts[self._alive] = self._candidates.attempts(self._now[self._alive])
-        joined = Joined(attempts, self._candidates.tried.max(axis=1), in_time=True)
-        return joined, self._report(fits, sweeps, moved)
+        candidates = Joined(attempts, self._candidates.tried.max(axis=1), in_time=True)
+        return candidates, self._report(fits, sweeps, has_moved)
 
     def _report(self, fits: NDArray[np.float64], sweeps: int, moved: Masks) -> Approximation:
         own = np.array([passed / judged for judged, passed in self._candidates.rates])
@@ -123,9 +123,9 @@ class _Chains:
                 return fits
             if number % _UNJAM == _UNJAM - 1:
                 self._move((self._now >= 0) & waiting[:, np.newaxis])
-            accepted = self._move(absent)
+            is_accepted = self._move(absent)
             if number == 0 and self._alive.any():
-                fits = np.asarray(accepted[self._alive, start:stop].mean(axis=0))
+                fits = np.asarray(is_accepted[self._alive, start:stop].mean(axis=0))
         self._alive &= (self._now[:, :stop] >= 0).all(axis=1)
         return fits
 
@@ -137,25 +137,28 @@ class _Chains:
 
     def _move(self, mask: Masks) -> Masks:
         """Draw some groups of scenes again, one after the other; returns a mask of those that have a new place."""
-        drawn = np.full(self._now.shape, -1, dtype=np.intp)
+        proposals = np.full(self._now.shape, -1, dtype=np.intp)
         rows = np.flatnonzero(mask & self._alive[:, np.newaxis])
-        drawn.flat[rows] = self._draw(rows)
+        proposals.flat[rows] = self._draw(rows)
         self._alive &= ~self._candidates.is_over
-        drawn[~self._alive] = -1
-        accepted = drawn >= 0
-        begun = time.perf_counter()
-        step = max(1, LEAVES // (2 * drawn.shape[1]))
-        for start in range(0, len(drawn), step):
+        proposals[~self._alive] = -1
+        is_accepted = proposals >= 0
+        start_time = time.perf_counter()
+        step = max(1, LEAVES // (2 * proposals.shape[1]))
+        for start in range(0, len(proposals), step):
             some = slice(start, start + step)
-            self._settle(self._now[some], drawn[some], accepted[some])
+            self._settle(self._now[some], proposals[some], is_accepted[some])
         self._engine.note(
-            self._apart.number, len(rows), int(np.count_nonzero(accepted)), time.perf_counter() - begun
+            self._apart.number,
+            len(rows),
+            int(np.count_nonzero(is_accepted)),
+            time.perf_counter() - start_time,
         )
-        self._now = np.where(accepted, drawn, self._now)
+        self._now = np.where(is_accepted, proposals, self._now)
         if self._candidates.count > self._most_made:
             self._now = self._candidates.forget([self._now])[self._now]
             self._most_made = max(_MOST_KEPT, 2 * self._candidates.count)
-        return accepted
+        return is_accepted
 
     def _draw(self, rows: Indices) -> Indices:
         """The next candidates for the groups of some rows; of scenes that reach the limit of attempts whatever is there."""
@@ -167,22 +170,22 @@ class _Chains:
                 break
             self._candidates.supply(missing, np.ones(len(missing), dtype=np.int64))
         ones, zeros = np.ones(len(rows), dtype=np.int64), np.zeros(len(rows), dtype=np.int64)
-        taken = queues.take(rows, ones, zeros, np.arange(len(rows)))[:, 0]
-        return np.where(over, -1, taken)
+        proposals = queues.take(rows, ones, zeros, np.arange(len(rows)))[:, 0]
+        return np.where(over, -1, proposals)
 
     def _settle(self, now: Indices, drawn: Indices, accepted: Masks) -> None:
         """Clear those of the proposals ``drawn`` from ``accepted`` that collide when they are made one after the other.
 
         Proposals that collide with nothing, neither at present nor proposed, stand; the others are decided in their order.
         """
-        lanes, leaves, chosen, is_new = [], [], [], []
+        lanes, leaves, places_of_leaves, is_new = [], [], [], []
         for places in (now, drawn):
             lane, leaf = np.nonzero(places >= 0)
             lanes.append(lane)
             leaves.append(leaf)
-            chosen.append(places[lane, leaf])
+            places_of_leaves.append(places[lane, leaf])
             is_new.append(np.full(len(lane), places is drawn))
-        lane, leaf, every, new = (np.concatenate(each) for each in (lanes, leaves, chosen, is_new))
+        lane, leaf, every, new = (np.concatenate(each) for each in (lanes, leaves, places_of_leaves, is_new))
         order = np.argsort(lane, kind="stable")
         lane, leaf, every, new = lane[order], leaf[order], every[order], new[order]
         bodies, owner = self._candidates.spread(every)
@@ -191,10 +194,10 @@ class _Chains:
         )
         one, two = owner[first], owner[second]
         for scene, group, others in _conflicts(lane, leaf, new, one, two):
-            taken = accepted[scene]
+            stands = accepted[scene]
             # Of a group that comes earlier the place counts that it has got, of a later one the place that it has yet.
-            if any((other < group and taken[other]) == proposed for other, proposed in others):
-                taken[group] = False
+            if any((other < group and stands[other]) == is_proposal for other, is_proposal in others):
+                stands[group] = False
 
 
 def _conflicts(
@@ -202,8 +205,8 @@ def _conflicts(
 ) -> Iterator[tuple[int, int, list[tuple[int, bool]]]]:
     """Yield the proposals that collide with something, in order: lane, group, and with which groups' present or proposed places."""
     subject, other = np.concatenate([one, two]), np.concatenate([two, one])
-    proposed = new[subject]
-    subject, other = subject[proposed], other[proposed]
+    are_proposals = new[subject]
+    subject, other = subject[are_proposals], other[are_proposals]
     order = np.lexsort((leaf[subject], lane[subject]))
     subject, other = subject[order], other[order]
     starts = np.flatnonzero(np.diff(subject, prepend=-1)).tolist()

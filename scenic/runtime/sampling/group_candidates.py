@@ -174,20 +174,20 @@ class GroupCandidates:
         kinds = self._apart.kind[leaves]
         for number in distinct(kinds).tolist():
             mine = np.flatnonzero(kinds == number)
-            judged, passed = self.rates[number]
-            ratio = missing[mine] * (judged / passed)
+            judged_count, passed_count = self.rates[number]
+            ratio = missing[mine] * (judged_count / passed_count)
             counts = np.ceil(ratio) if len(mine) <= LEAVES // 64 else np.floor(ratio)
             self._attempt_kind(number, scenes[mine], leaves[mine], rows[mine], counts.astype(np.int64))
 
     def _attempt_kind(
         self, number: int, scenes: Indices, leaves: Indices, rows: Indices, counts: Numbers
     ) -> None:
-        tried = self.tried[scenes, leaves]
-        counts = np.minimum(np.clip(counts, 1, self.lanes), self._limit - tried)
+        attempts_so_far = self.tried[scenes, leaves]
+        counts = np.minimum(np.clip(counts, 1, self.lanes), self._limit - attempts_so_far)
         self.is_over[scenes[counts == 0]] = True
         self.tried[scenes, leaves] += counts
         owner, offset = expand(counts)
-        attempts = tried[owner] + offset
+        attempts = attempts_so_far[owner] + offset
         for start in range(0, len(owner), self.lanes):
             part = slice(start, start + self.lanes)
             mine = owner[part]
@@ -219,18 +219,18 @@ class GroupCandidates:
 
     def forget(self, held: Sequence[Indices]) -> Indices:
         """Forget candidates that are neither waiting nor held; returns the new numbers of all, -1 of the forgotten and of -1."""
-        used = np.zeros(self.count + 1, dtype=np.bool_)
+        is_used = np.zeros(self.count + 1, dtype=np.bool_)
         for each in (*held, self.queues.kept[self.queues.live()]):
-            used[each[each >= 0]] = True
-        chosen = np.flatnonzero(used[:-1])
-        renamed = np.full(len(used), -1, dtype=np.intp)
-        renamed[chosen] = np.arange(len(chosen))
-        self.queues.kept = renamed[self.queues.kept]
-        owner, offset = expand(self._size[chosen])
-        self.bodies.keep(self._body[chosen][owner] + offset)
-        self.count = len(chosen)
+            is_used[each[each >= 0]] = True
+        numbers = np.flatnonzero(is_used[:-1])
+        new_number = np.full(len(is_used), -1, dtype=np.intp)
+        new_number[numbers] = np.arange(len(numbers))
+        self.queues.kept = new_number[self.queues.kept]
+        owner, offset = expand(self._size[numbers])
+        self.bodies.keep(self._body[numbers][owner] + offset)
+        self.count = len(numbers)
         for column in (self._attempt, self._size):
-            column[: self.count] = column[chosen]
+            column[: self.count] = column[numbers]
         sizes = self._size[: self.count]
         self._body[: self.count] = np.cumsum(sizes) - sizes
-        return renamed
+        return new_number

@@ -104,13 +104,13 @@ class Bodies:
         The arguments are those of `apart`; ``is_new`` ``(n,)`` masks the new bodies.
         """
         first, second = self._near(chosen, lane, part)
-        wanted = is_new[first] | is_new[second]
-        wanted &= self._forbidden(chosen[first], chosen[second], may_meet)
-        first, second = first[wanted], second[wanted]
-        met = [
+        may_collide = is_new[first] | is_new[second]
+        may_collide &= self._forbidden(chosen[first], chosen[second], may_meet)
+        first, second = first[may_collide], second[may_collide]
+        collision_parts = [
             self._collide(chosen[first[step]], chosen[second[step]]) for step in rows(len(first), 1, _STEP)
         ]
-        collides = np.concatenate([np.empty(0, dtype=np.bool_), *met])
+        collides = np.concatenate([np.empty(0, dtype=np.bool_), *collision_parts])
         return first[collides], second[collides]
 
     def pairs(self, may_meet: Booleans) -> tuple[int, int]:

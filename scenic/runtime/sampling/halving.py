@@ -323,7 +323,7 @@ def may_fault(plan: Plan) -> bool:
 
 
 def _within(count: int, spans: Sequence[tuple[int, int]], logs: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Logarithms ``(count + 1, count + 1)`` of the chance that all checks within blocks ``i`` to ``j`` hold."""
+    """Return logarithms ``(count + 1, count + 1)`` of the chance that all checks within blocks ``i`` to ``j`` hold."""
     table = np.zeros((count + 1, count + 1))
     for (low, high), log in zip(spans, logs.tolist(), strict=True):
         table[low, high + 1] += log

@@ -106,7 +106,7 @@ class _Queue:
         self._passed += passed
 
     def add(self, scenes: NDArray[np.intp], candidates: Numbers) -> None:
-        """Candidates ``(m, leaves)`` for scenes ``(m,)``, ascending."""
+        """Append candidates ``(m, leaves)`` to the queues of the scenes ``(m,)``, which are ascending."""
         if not len(scenes):
             return
         rank = np.arange(len(scenes)) - np.searchsorted(scenes, scenes)

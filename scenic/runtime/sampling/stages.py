@@ -94,7 +94,7 @@ class Stages:
         return plan
 
     def _price(self, index: int) -> float:
-        """Seconds for each lane that the check rejects."""
+        """Return the seconds that the check takes for each lane that it rejects."""
         measured = self._measured[index]
         if measured.lanes < _KNOWN_LANES:
             return self._checks[index].cost * 1e-7 / 0.5

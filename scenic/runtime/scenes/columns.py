@@ -124,7 +124,7 @@ class _Property:
 
 
 def _lanes(scenes: Sequence[Scene]) -> Iterator[tuple[FinishedLanes, list[int]]]:
-    """Consecutive scenes of one batch, and their lanes in it."""
+    """Yield consecutive scenes of one batch, and their lanes in it."""
     for _, group in groupby(scenes, key=lambda scene: id(scene.found)):
         some = list(group)
         yield some[0].found, [scene.lane for scene in some]

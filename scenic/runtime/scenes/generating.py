@@ -68,7 +68,7 @@ class Generating(Restoring, ABC):
         raise TypeError(_BY_HAND)
 
     def _in_processes(self, n: int, **options: Any) -> Iterator[Scene]:
-        """Scenes that other processes make, which compile the program for themselves."""
+        """Yield the scenes that other processes make, which compile the program for themselves."""
         raise TypeError(_BY_HAND)
 
     def _external_points(self) -> ExternalPoints:

@@ -42,8 +42,10 @@ def idle_draws(program: Program, graph: Graph) -> frozenset[int]:
     idle_axes = Graph(list(_nodes(idle))).axes
     if not idle_axes:
         return frozenset()
-    used = Graph([*(item.condition for item in program.requirements), *_nodes(others)]).axes
-    return frozenset(graph.address(axis) for axis in idle_axes if axis in graph.index and axis not in used)
+    axes_in_use = Graph([*(item.condition for item in program.requirements), *_nodes(others)]).axes
+    return frozenset(
+        graph.address(axis) for axis in idle_axes if axis in graph.index and axis not in axes_in_use
+    )
 
 
 def defaults(definition: Definition) -> dict[str, object]:

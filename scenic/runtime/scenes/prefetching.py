@@ -61,7 +61,7 @@ class Foreseen:
             self._lock.release()
 
     def _begin(self, seed: int, limit: int) -> None:
-        """Another stream, whose first seed is this one."""
+        """Start another stream, whose first seed is ``seed``."""
         # Who draws numbers between one scene and the next has broken off the stream before after its first scene.
         more = self._given != 1
         self._given = 0

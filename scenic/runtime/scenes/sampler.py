@@ -158,8 +158,8 @@ class Sampler:
         self._divide()
         limit = self._most_attempts(max_attempts)
         if isinstance(self._finder, PiecewiseEngine) and self._finder.can_approximate():
-            wanted = [(seed, k) for k in range(first, first + count)]
-            return self._finder.approximate(wanted, max_attempts=limit, together=lanes)
+            scene_numbers = [(seed, k) for k in range(first, first + count)]
+            return self._finder.approximate(scene_numbers, max_attempts=limit, together=lanes)
         from scenic.runtime.sampling.approximate import approximated  # few runs want it
 
         return approximated(

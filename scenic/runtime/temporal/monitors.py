@@ -61,7 +61,7 @@ def _both(left: _Clauses, right: _Clauses) -> _Clauses:
 
 
 def _absorbed(clauses: _Clauses) -> _Clauses:
-    """Without the clauses that another one implies."""
+    """Remove the clauses that another one implies."""
     if len(clauses) == 1:
         return clauses
     kept: list[frozenset[Obligation]] = []
@@ -107,11 +107,11 @@ class FormulaMonitor:
             assert self.verdict is not None
             return self.verdict
         else:
-            known = self._steps.get(self._left)
-            if known is None:
-                known = self._steps[self._left] = self._left, _Step()
+            transition = self._steps.get(self._left)
+            if transition is None:
+                transition = self._steps[self._left] = self._left, _Step()
             # Of equal sets one, since others may ask for atoms in another order.
-            self._left, step = known
+            self._left, step = transition
             left = step.taken(evaluate, self._next)
         if left is not self._left or self.verdict is None:
             self._left = left
@@ -163,16 +163,16 @@ class _Step:
             except Exception as error:  # noqa: BLE001 - it may not count
                 return work_out(_Replayed(answers, evaluate, error))
             answers.append(answer)
-            known = step._then.get(answer)
-            if known is None:
+            following = step._then.get(answer)
+            if following is None:
                 break
-            step = known
+            step = following
         if step._left is not None:
             return step._left
-        replayed = _Replayed(answers, evaluate)
-        left = work_out(replayed)
-        if not replayed.has_failed:
-            self._keep(replayed.asked, left)
+        replay = _Replayed(answers, evaluate)
+        left = work_out(replay)
+        if not replay.has_failed:
+            self._keep(replay.asked, left)
         return left
 
     def _keep(self, asked: Sequence[tuple[int, bool]], left: _Clauses) -> None:

@@ -143,7 +143,7 @@ def _lower(left: _Clauses, right: _Clauses) -> _Clauses:
 
 
 def _needed(clauses: _Clauses) -> _Clauses:
-    """Without the clauses that are never above another one."""
+    """Remove the clauses that are never above another one."""
     if len(clauses) < 2:
         return clauses
     kept: dict[frozenset[Obligation], float] = {}

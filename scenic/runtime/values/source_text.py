@@ -50,7 +50,7 @@ def _listed(operands: Any, depth: int) -> str:
 
 
 def _choice(node: Node, depth: int) -> str:
-    """``Uniform`` or ``Discrete``, by the weights."""
+    """Write ``Uniform`` or ``Discrete``, by the weights."""
     sums = node.operands[0].payload
     weights = [after - before for before, after in zip((0.0, *sums), sums, strict=False)]
     if node.operation.name == "select":

@@ -229,12 +229,12 @@ class MetaDriveSimulation(DrivingSimulation):
 
 
 def _theta(heading: float) -> float:
-    """MetaDrive's heading, from east, of one from north; radians."""
+    """Convert a heading from north to MetaDrive's, from east; radians."""
     return float(heading) + math.pi / 2
 
 
 def _action(actor: Any, controls: Any) -> list[float]:
-    """Steering, to the left from 0 to 1, and acceleration from -1 to 1."""
+    """Return steering, to the left from 0 to 1, and acceleration from -1 to 1."""
     brake = max(controls.brake, controls.handbrake)
     # MetaDrive takes negative accelerations for the brake, or for driving backwards.
     actor.enable_reverse = controls.reverse and not brake

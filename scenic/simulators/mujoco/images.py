@@ -52,7 +52,7 @@ class Images:
         self._cameras.deliver(simulation, leave=_DRAWN)
 
     def _image(self, data: object, sensor: Any, camera: str) -> Any:
-        """Colours ``(height, width, 3)``, or depth ``(height, width)``, metres, infinite where nothing is."""
+        """Return colours ``(height, width, 3)``, or depth ``(height, width)``, metres, infinite where nothing is."""
         renderer = self._renderer((sensor.height, sensor.width))
         if sensor.outputs == ("rgb",):
             renderer.disable_depth_rendering()

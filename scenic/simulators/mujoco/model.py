@@ -184,7 +184,7 @@ class Builder:
     # Forms
 
     def _weight(self, thing: object) -> dict[str, float]:
-        """Mass or density as arguments of a geom."""
+        """Return mass or density as arguments of a geom."""
         for name in ("mass", "density"):
             value = getattr(thing, name, None)
             if value is None:
@@ -262,7 +262,7 @@ class Builder:
         return self._parted[key][1]
 
     def _surface(self, thing: object) -> dict[str, Any]:
-        """Friction, contacts and colour as arguments of a geom."""
+        """Return friction, contacts and colour as arguments of a geom."""
         color = getattr(thing, "color", None)
         red, green, blue, *alpha = _COLOR if color is None else (float(part) for part in color)
         arguments: dict[str, Any] = {"rgba": [red, green, blue, alpha[0] if alpha else 1.0]}
@@ -298,7 +298,7 @@ class Builder:
     # What moves by itself
 
     def _robot(self, body: Any, part: ModelPart, weight: dict[str, float]) -> None:
-        """A body on two driven wheels and two frictionless casters, all within the object's box."""
+        """Add a body on two driven wheels and two frictionless casters, all within the object's box."""
         thing, mujoco = part.thing, self._mj
         width, length, height = float(thing.width), float(thing.length), float(thing.height)
         radius = getattr(thing, "wheelRadius", None)
@@ -362,7 +362,7 @@ class Builder:
         motor.set_to_velocity(kv=drive)
 
     def _car(self, body: Any, part: ModelPart, weight: dict[str, float]) -> None:
-        """A body on four driven wheels, of which the front ones are steered."""
+        """Add a body on four driven wheels, of which the front ones are steered."""
         thing = part.thing
         width, length, height = float(thing.width), float(thing.length), float(thing.height)
         radius = getattr(thing, "wheelRadius", None)
@@ -415,7 +415,7 @@ class Builder:
         return holder
 
     def _guide(self, body: Any, part: ModelPart) -> None:
-        """A floating body, welded to a frame that moves by commands."""
+        """Add a floating body, welded to a frame that moves by commands."""
         body.gravcomp = 1.0
         name = f"{part.name} guide"
         self.spec.worldbody.add_body(

@@ -218,7 +218,7 @@ class _World:
 
 
 def _change(first: _Pose, last: _Pose) -> tuple[float, float, float]:
-    """Distance (metres), angle (radians) and height (metres) between two poses of a body."""
+    """Return the distance (metres), angle (radians) and height (metres) between two poses of a body."""
     shift = last[0] - first[0]
     angle = 2 * math.acos(min(1.0, abs(float(first[1] @ last[1]))))
     return float(np.linalg.norm(shift)), angle, float(shift[2])

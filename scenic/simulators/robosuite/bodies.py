@@ -161,7 +161,7 @@ def _special_arena(arenas: Any, kind: str, size: list[float], top: list[float], 
 
 
 def _triple(friction: Any) -> list[float]:
-    """Sliding, torsional and rolling friction; the last two are MuJoCo's defaults if only the first is given."""
+    """Return sliding, torsional and rolling friction; the last two are MuJoCo's defaults if only the first is given."""
     if isinstance(friction, int | float):
         return [float(friction), 0.005, 0.0001]
     return [float(part) for part in friction]

@@ -60,7 +60,7 @@ def _made_together(*columns: list[Any]) -> list[Any]:
 
 
 def _colors(rows: Iterable[Sequence[float]]) -> list[Any]:
-    """Colours of rows of three parts; what `Color` does for each, without calling Python code for it."""
+    """Return colours of rows of three parts, as `Color` does for each, without calling Python code for it."""
     return list(map(tuple.__new__, repeat(Color), rows))
 
 
@@ -108,7 +108,7 @@ def _shifted(color: Any, hue: float, lightness: float, saturation: float) -> Col
 def _shifted_together(
     colors: list[Any], hues: list[float], lightnesses: list[float], saturations: list[float]
 ) -> list[Any] | None:
-    """`_shifted` of many colours: the formula of `colorsys.hls_to_rgb`, equal in every bit."""
+    """Shift many colours as `_shifted` does: the formula is that of `colorsys.hls_to_rgb`, equal in every bit."""
     try:
         numbers = {color: number for number, color in enumerate(dict.fromkeys(colors))}
         hls_colors = np.array([colorsys.rgb_to_hls(*color) for color in numbers])

@@ -168,7 +168,7 @@ def _all_pairs(lower: Cells, upper: Cells, moving: int) -> Iterator[tuple[Indice
 
 
 def _where(mask: Booleans) -> Indices:
-    """``np.flatnonzero`` of a mask whose length is a multiple of 8; faster if it is long and nearly empty."""
+    """Return ``np.flatnonzero`` of a mask whose length is a multiple of 8; this is faster if the mask is long and nearly empty."""
     words = np.flatnonzero(mask.view(np.uint64) != 0)
     found = np.flatnonzero(mask.reshape(-1, _WORD)[words])
     result: Indices = words[found // _WORD] * _WORD + found % _WORD
@@ -176,7 +176,10 @@ def _where(mask: Booleans) -> Indices:
 
 
 def _swept_pairs(lower: Cells, upper: Cells, moving: int) -> Iterator[tuple[Indices, Indices, Indices]]:
-    """Each lane's bodies sorted along one axis; each is compared with those that begin before it ends."""
+    """Yield pairs of bodies that overlap along one axis.
+
+    Each lane's bodies are sorted along the axis; each is compared with those that begin before it ends.
+    """
     bodies, lanes = lower.shape[1:]
     along, other = _sweep_axes(lower, upper)
     order = np.argsort(lower[along], axis=0, kind="stable")

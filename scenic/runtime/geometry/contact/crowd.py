@@ -231,7 +231,7 @@ class Crowd:
 
 
 def _reach(orientation: Floats, size: Floats) -> Floats:
-    """Half the extents of the world boxes."""
+    """Return half the extents of the world boxes."""
     matrix = np.abs(quaternions.to_matrix(orientation))
     half = 0.5 * size
     x, y, z = half[..., 0], half[..., 1], half[..., 2]

@@ -220,7 +220,7 @@ class Solids:
         return touching
 
     def _meet(self, pairs: "_Pairs") -> Booleans:
-        """Entries whose surfaces share a point, and some of those where one solid reaches into the other."""
+        """Return the mask of the entries whose surfaces share a point, and of some of those where one solid reaches into the other."""
         front = self._fronts.find(*pairs.ways)
         result = front.touching
         first, second = front.leaves()

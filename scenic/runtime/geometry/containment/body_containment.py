@@ -273,7 +273,7 @@ def _container(dimensions: Floats, position: Floats, rotation: Floats) -> tuple[
 
 
 def _all_inside(body: Body, lanes: int, test: _Test) -> Booleans:
-    """``test`` on the hull, for convex containers."""
+    """Apply ``test`` to the hull, for convex containers."""
     result = np.zeros(lanes, dtype=np.bool_)
     for mesh, lanes_of_mesh in body.by_mesh(lanes):
         whole = _chunked(test, lanes_of_mesh, _BOX_CORNERS)
@@ -304,7 +304,7 @@ def _find_extreme_corners(mesh: Mesh) -> Floats:
 
 
 def _chunked(test: _Test, chosen: Indices, points: Floats) -> Booleans:
-    """``test`` with bounded memory; a lane continues only while all points so far are inside."""
+    """Apply ``test`` with bounded memory; a lane continues only while all points so far are inside."""
     result = np.ones(len(chosen), dtype=np.bool_)
     for some in rows(len(points), 1, 4096):
         left = np.flatnonzero(result)

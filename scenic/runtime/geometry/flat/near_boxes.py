@@ -28,13 +28,13 @@ def near_boxes(tree: Any, lower: Floats, upper: Floats) -> tuple[Indices, Indice
     is_first = np.ones(len(corners), dtype=np.bool_)
     is_first[1:] = (corners[1:] != corners[:-1]).any(axis=1)
     first = np.flatnonzero(is_first)
-    asked, found = tree.query(shapely.box(*corners[first].T))
-    order = np.lexsort((found, asked))
-    asked, found = asked[order], found[order]
+    queries, hits = tree.query(shapely.box(*corners[first].T))
+    order = np.lexsort((hits, queries))
+    queries, hits = queries[order], hits[order]
     if len(first) == len(corners):
-        return asked, found
-    counts = np.bincount(asked, minlength=len(first))
+        return queries, hits
+    counts = np.bincount(queries, minlength=len(first))
     starts = np.cumsum(counts) - counts
     run = np.cumsum(is_first) - 1
     owner, offset = expand(counts[run])
-    return owner, found[starts[run[owner]] + offset]
+    return owner, hits[starts[run[owner]] + offset]

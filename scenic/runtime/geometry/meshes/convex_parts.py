@@ -77,7 +77,7 @@ def _approximate(mesh: Any, library: Any) -> Arrays:
 
 
 def _stored(parts: Sequence[npt.NDArray[np.float64]] | None) -> Arrays:
-    """Parts as the store keeps them."""
+    """Return the parts in the form in which the store keeps them."""
     vertices = np.concatenate(parts) if parts else np.empty((0, 3))
     return {"vertices": vertices, "ends": np.cumsum([len(part) for part in parts or ()], dtype=np.int64)}
 

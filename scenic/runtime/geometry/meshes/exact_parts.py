@@ -122,7 +122,7 @@ def _planes(corners: Floats, faces: npt.NDArray[np.int64], normals: Floats, offs
 def _reflex_edges(
     corners: Floats, faces: npt.NDArray[np.int64], normals: Floats, offsets: Floats
 ) -> Iterator[tuple[int, int, int, int]]:
-    """Edges at which the solid is not convex: their ends and their faces."""
+    """Yield the edges at which the solid is not convex: their ends and their faces."""
     sides: dict[tuple[int, int], tuple[int, int]] = {}
     for number, (a, b, c) in enumerate(faces.tolist()):
         for one, other, opposite in ((a, b, c), (b, c, a), (c, a, b)):

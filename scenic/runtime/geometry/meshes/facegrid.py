@@ -98,8 +98,8 @@ class FaceGrid:
 
     def _faces_in(self, query: Indices, cell: Indices) -> tuple[Indices, Indices]:
         counts = self.starts[cell + 1] - self.starts[cell]
-        occupied = np.flatnonzero(counts)
-        query, cell, counts = query[occupied], cell[occupied], counts[occupied]
+        full_cells = np.flatnonzero(counts)
+        query, cell, counts = query[full_cells], cell[full_cells], counts[full_cells]
         keys = [np.zeros(0, dtype=np.intp)]
         count = int(self.faces.max(initial=0)) + 1
         for part in pieces(counts, _CHUNK):

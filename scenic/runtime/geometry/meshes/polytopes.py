@@ -157,7 +157,7 @@ def distances_without_ball(planes: Floats, centre: Floats, radius: Floats, point
 
 
 def _unit(vectors: Floats) -> Floats:
-    """Vectors of length 1; along x where there is no direction."""
+    """Return vectors of length 1; along x where there is no direction."""
     length = np.sqrt(dot(vectors, vectors))[..., np.newaxis]
     return np.where(length > 0, vectors / np.where(length > 0, length, 1.0), np.array([1.0, 0.0, 0.0]))
 

@@ -116,7 +116,7 @@ def _subdivided(vertices: Floats, faces: Indices) -> tuple[Floats, Indices]:
 
 
 def _circle(sections: int) -> Floats:
-    """Vertices ``(sections, 2)`` on the circle of diameter 1, exact where they lie on the axes."""
+    """Return vertices ``(sections, 2)`` on the circle of diameter 1, exact where they lie on the axes."""
     angles = np.arange(sections) * (2 * np.pi / sections)
     points = 0.5 * np.stack([np.cos(angles), np.sin(angles)], axis=1)
     return np.where(np.abs(points) < 1e-15, 0.0, points)

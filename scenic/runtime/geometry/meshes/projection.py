@@ -147,7 +147,7 @@ def _nearest_hits(
     directions: Floats,
     chosen: Indices,
 ) -> tuple[Indices, Floats]:
-    """For each of the chosen entries the face hit first, or -1, and the signed way there in directions."""
+    """Return for each of the chosen entries the face hit first, or -1, and the signed way there in directions."""
     poses_here = poses.take(chosen)
     start, way = (part if len(part) == 1 else part[chosen] for part in (points, directions))
     local = np.broadcast_to(poses_here.to_unit(start), (len(chosen), 3))

@@ -84,7 +84,7 @@ class _Hull:
     neighbours: Indices
 
     def shares(self, sizes: Floats) -> Floats:
-        """Probabilities ``(n, f)`` of the faces at sizes ``(n, 3)``."""
+        """Return the probabilities ``(n, f)`` of the faces at sizes ``(n, 3)``."""
         scales = sizes[:, np.newaxis]
         beyond = _beyond(self, scales)
         # The farthest that the centre of mass is outside an edge of each face, negative inside.
@@ -99,14 +99,14 @@ class _Hull:
         rest = _followed(np.where(stands, itself, over))
         # A solid that is pushed leaves poses that are not firm; where it comes to none that is, it has rolled on a round side.
         firm = margins >= _FIRM
-        pushed = _followed(np.where(firm, itself, np.take_along_axis(rest, over, axis=1)))
-        goal = np.where(np.take_along_axis(firm, pushed, axis=1), pushed, itself)
+        pose_after_push = _followed(np.where(firm, itself, np.take_along_axis(rest, over, axis=1)))
+        goal = np.where(np.take_along_axis(firm, pose_after_push, axis=1), pose_after_push, itself)
         target = np.take_along_axis(goal, rest, axis=1)
-        landed = np.add.reduceat(
+        masses = np.add.reduceat(
             _solid_angles(self.triangles * scales[:, np.newaxis]), self.first_triangles, axis=1
         )
-        shares = np.zeros_like(landed)
-        np.add.at(shares, (np.arange(len(sizes))[:, np.newaxis], target), landed)
+        shares = np.zeros_like(masses)
+        np.add.at(shares, (np.arange(len(sizes))[:, np.newaxis], target), masses)
         shares /= shares.sum(axis=1, keepdims=True)
         return shares
 
@@ -119,14 +119,14 @@ def _followed(target: Indices) -> Indices:
 
 
 def _beyond(hull: _Hull, scales: Floats) -> Floats:
-    """Distances ``(n, e)`` by which the centre of mass is outside the edges, seen along the normals of their faces."""
+    """Return the distances ``(n, e)`` by which the centre of mass is outside the edges, seen along the normals of their faces."""
     starts, along = hull.starts * scales, (hull.ends - hull.starts) * scales
     outwards = cross(along, hull.normals[hull.owners] / scales)
     return -dot(starts, outwards) / length(outwards)
 
 
 def _solid_angles(triangles: Floats) -> Floats:
-    """Solid angles of triangles ``(..., 3, 3)`` seen from the origin (A. van Oosterom and J. Strackee, 1983)."""
+    """Return the solid angles of triangles ``(..., 3, 3)`` seen from the origin (A. van Oosterom and J. Strackee, 1983)."""
     a, b, c = np.moveaxis(triangles, -2, 0)
     la, lb, lc = length(a), length(b), length(c)
     angles: Floats = 2 * np.arctan2(
@@ -238,7 +238,7 @@ def resting_poses(footing: Footing, sizes: Floats, draws: Floats) -> Floats:
 
 @lru_cache(maxsize=512)
 def _known(footing: Footing, size: tuple[float, ...]) -> tuple[Floats, Floats]:
-    """Cumulative probabilities ``(p,)`` and poses ``(3, p)`` of the faces on which a solid of one size may rest."""
+    """Return cumulative probabilities ``(p,)`` and poses ``(3, p)`` of the faces on which a solid of one size may rest."""
     limits = _limits(footing, np.array([size]))[0]
     faces = np.unique(limits, return_index=True)[1]
     poses = [
@@ -249,7 +249,7 @@ def _known(footing: Footing, size: tuple[float, ...]) -> tuple[Floats, Floats]:
 
 
 def _limits(footing: Footing, sizes: Floats) -> Floats:
-    """Cumulative probabilities ``(n, f)`` of the faces at sizes ``(n, 3)``; the last that is possible has infinity, above any draw."""
+    """Return cumulative probabilities ``(n, f)`` of the faces at sizes ``(n, 3)``; the last possible one is infinite, above any draw."""
     sums = np.cumsum(footing.shares(sizes), axis=1)
     return np.where(sums == sums[:, -1:], np.inf, sums)
 

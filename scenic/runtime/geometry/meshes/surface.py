@@ -82,7 +82,7 @@ def _faces_one_by_one(
 def _chosen_faces(
     mesh: Mesh, kind: "_Stretches", threshold: float, areas: Floats, uniforms: Floats
 ) -> Indices:
-    """Faces drawn by area: first a block of faces, then one of its faces."""
+    """Draw faces by area: first a block of faces, then one of its faces."""
     targets = uniforms * areas[-1]
     blocks = np.searchsorted(areas, targets, side="right")
     # Rounding may carry the target to the very end; the last block with an area is meant.

@@ -120,7 +120,7 @@ def _box_voxels(mesh: Mesh) -> Voxels:
 
 
 def _cover(occupied: Booleans) -> Floats:
-    """Boxes around the occupied cells: the box that holds most empty cells is cut in two, again and again."""
+    """Return boxes around the occupied cells: the box that contains most empty cells is cut in two, repeatedly."""
     # Coarser cells do for this, and are eight times fewer.
     blocks = occupied.reshape(*(_COVER_RESOLUTION, RESOLUTION // _COVER_RESOLUTION) * 3)
     occupied = np.asarray(np.logical_or.reduce(blocks, axis=(1, 3, 5)))

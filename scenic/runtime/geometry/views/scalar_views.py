@@ -65,7 +65,7 @@ class View(NamedTuple):
 
 
 def _angular(radius: float, distance: float) -> float:
-    """Half the angle under which a ball is seen; half a turn from inside."""
+    """Return half the angle under which a ball is seen; half a turn from inside."""
     return math.asin(radius / distance) if radius < distance else math.pi
 
 

@@ -65,11 +65,11 @@ class _Cells:
         )
 
     def middles(self) -> Floats:
-        """Unit directions in the middles, ``(c, 3)``."""
+        """Return unit directions in the middles, ``(c, 3)``."""
         return _direction(self.azimuth.mean(axis=1), self.altitude.mean(axis=1))
 
     def corners(self) -> Floats:
-        """Four unit directions whose conic hull holds the cell, anticlockwise from the lower right: ``(c, 4, 3)``.
+        """Return four unit directions whose conic hull contains the cell, anticlockwise from the lower right: ``(c, 4, 3)``.
 
         A side of constant altitude is no great circle: the great circle between its ends lies above it where the
         altitude is positive. There, so that it touches from below, the ends' tangent shrinks by the cosine of
@@ -215,7 +215,7 @@ def _first_cells(views: Views, target: Extents) -> _Cells:
 
 
 def _cover(placed: SeenBodies, target: Body, views: Views, lanes: Indices) -> tuple[Floats, Floats]:
-    """Boxes that hold the target: corners in the view's frame ``(n, k, 8, 3)`` and distances ``(n, k)``, metres."""
+    """Return boxes that contain the target: corners in the view's frame ``(n, k, 8, 3)`` and distances ``(n, k)``, metres."""
     covers = [mesh.derived(voxels).cover for mesh in placed.meshes]
     width = max(len(cover) for cover in covers)
     boxes_of_meshes = np.stack([cover[np.minimum(np.arange(width), len(cover) - 1)] for cover in covers])

@@ -145,7 +145,7 @@ def _pair(point: Any) -> tuple[float, float]:
 
 
 def _projected(points: Sequence[object], origin: tuple[float, float]) -> Array:
-    """Latitudes and longitudes in metres east and north of the origin, ``(n, 2)``, on the tangent plane there."""
+    """Convert latitudes and longitudes to metres east and north of the origin, ``(n, 2)``, on the tangent plane there."""
     degrees = np.array([_pair(point) for point in points], dtype=np.float64).reshape(-1, 2)
     latitude = math.radians(origin[0])
     squared = _FLATNESS * (2 - _FLATNESS)
