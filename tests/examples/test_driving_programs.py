@@ -112,12 +112,14 @@ def test_cars_stop_before_what_lies_in_their_lane() -> None:
 
 @pytest.mark.parametrize("seed", range(4))
 def test_walkers_cross_the_road_unharmed(seed: int) -> None:
-    _, done, numbers = simulated("walkers", 200, seed)
+    network, done, numbers = simulated("walkers", 200, seed)
     ego, walker, obstacle = (numbers[name] for name in ("ego", "crossing_over", "bin"))
     assert apart(done, walker, obstacle) > 0
     assert apart(done, walker, ego) > 0.3
     ways = [state.positions[walker] for state in done.trajectory]
-    assert ways[0].distanceTo(ways[-1]) > 2
+    assert ways[0].distanceTo(ways[-1]) == pytest.approx(10, abs=0.2)
+    assert any(network.laneAt(place) is not None for place in ways)
+    assert network.sidewalkAt(ways[0]) is not network.sidewalkAt(ways[-1])
 
 
 @pytest.mark.parametrize("seed", range(3))
