@@ -3,6 +3,7 @@
 All roads of a map are tables, so that many points on different roads are computed at once.
 """
 
+import math
 from collections.abc import Sequence
 from functools import cached_property
 from typing import Final
@@ -115,8 +116,20 @@ class Elevation:
 
     def heights_and_gradients(self, roads: Indices, places: Floats) -> tuple[Floats, Floats]:
         """`heights` and `gradients` at once."""
-        projected = self._lines.project(roads, places)
-        return self._heights(roads, *projected[:2]), self._gradients(roads, *projected)
+        heights = self._level_heights[roads]
+        gradients = np.zeros((len(roads), 2))
+        # Most roads are level, and it takes long to find out where on a road a place is.
+        some = np.flatnonzero(np.isnan(heights))
+        if len(some):
+            projected = self._lines.project(roads[some], places[some])
+            heights[some] = self._heights(roads[some], *projected[:2])
+            gradients[some] = self._gradients(roads[some], *projected)
+        return heights, gradients
+
+    @cached_property
+    def _level_heights(self) -> Floats:
+        """The heights of roads that are level, NaN of others."""
+        return np.array([_level_height(road) for road in self.roads])
 
     def _gradients(self, roads: Indices, s: Floats, t: Floats, heading: Floats, bend: Floats) -> Floats:
         lean, change = self._lean(roads, s, t)
@@ -164,6 +177,17 @@ class Elevation:
         if self._shapes.is_zero and all(table.is_zero for table in self._tilts):
             return 0.0
         return float(np.abs(self._lines.project(np.full(len(places), road), places)[1]).max(initial=0.0))
+
+
+def _level_height(road: RoadHeight) -> float:
+    """Return the height of a road that is level and even, NaN of another one."""
+    slopes = [(cubic.b, cubic.c, cubic.d) for cubic in road.profile]
+    leans = [(cubic.a, cubic.b, cubic.c, cubic.d) for cubic in (*road.tilt, *road.falls[0], *road.falls[1])]
+    heights = {cubic.a for cubic in road.profile} or {0.0}
+    is_level = (
+        len(heights) == 1 and not any(map(any, slopes)) and not any(map(any, leans)) and not road.shapes
+    )
+    return heights.pop() if is_level else math.nan
 
 
 class _Cubics:

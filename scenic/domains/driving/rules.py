@@ -52,7 +52,8 @@ class _Halt:
         along: to the line.
         end: to the end of the intersection after it.
         maneuver: through the intersection, if any.
-        signals: that hold.
+        lights: that hold.
+        has_stop_sign: whether every car has to halt.
         crossing: a pedestrian crossing.
         is_stopped_for: the car has stood at the line.
         stops_at_yellow: what was decided when the light turned yellow, while it is so.
@@ -62,7 +63,8 @@ class _Halt:
     along: float
     end: float
     maneuver: Maneuver | None = None
-    signals: tuple[Any, ...] = ()
+    lights: tuple[Any, ...] = ()
+    has_stop_sign: bool = False
     crossing: Any = None
     is_stopped_for: bool = False
     stops_at_yellow: bool | None = None
@@ -189,7 +191,10 @@ class RulesDriver(LaneDriver):
                 maneuver = _maneuver_of(before, lane)
                 if maneuver is not None:
                     end = start + _length(lane)
-                    self._halts.append(_Halt(start, end, maneuver, maneuver.signals))
+                    signals = maneuver.signals
+                    lights = tuple(signal for signal in signals if signal.isTrafficLight)
+                    stops = any(signal.isStopSign for signal in signals)
+                    self._halts.append(_Halt(start, end, maneuver, lights, stops))
             self._halts += [
                 _Halt(start + near, start + far, crossing=crossing)
                 for crossing, near, far in lane.network.crossings_along(lane)
@@ -256,8 +261,8 @@ class RulesDriver(LaneDriver):
             return behind
         if halt.crossing is not None:
             return f"for pedestrians on {halt.crossing.uid}"
-        for signal in halt.signals:
-            if signal.isTrafficLight and self._simulation.signalState(signal) in ("red", "yellow"):
+        for signal in halt.lights:
+            if self._simulation.signalState(signal) in ("red", "yellow"):
                 return f"at the light {signal.openDriveID!r}"
         if not self._has_room(halt):
             return "since cars stand after the intersection"
@@ -273,7 +278,7 @@ class RulesDriver(LaneDriver):
             self._simulation.right_of_way.leave(self._agent, maneuver)
             self._claim(maneuver, speed, distance, now, must_wait=True)
             return True
-        if "signs" not in self._ignored and any(signal.isStopSign for signal in halt.signals):
+        if halt.has_stop_sign and "signs" not in self._ignored:
             halt.is_stopped_for |= speed < 0.1 and distance < _BEFORE + 1.5
             if not halt.is_stopped_for:
                 self._claim(maneuver, speed, distance, now, must_wait=True)
@@ -302,9 +307,7 @@ class RulesDriver(LaneDriver):
         return claim
 
     def _is_red(self, halt: _Halt, speed: float, distance: float) -> bool:
-        for signal in halt.signals:
-            if not signal.isTrafficLight:
-                continue
+        for signal in halt.lights:
             color = self._simulation.signalState(signal)
             if color == "red":
                 return distance > -0.5
