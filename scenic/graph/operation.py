@@ -1,6 +1,7 @@
 """An entry of the table of operations: one operation, all its readings side by side."""
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any, Final, Protocol, TypeVar
 
 import numpy as np
@@ -255,6 +256,10 @@ class Operation:
     def runs_python(self, operands: Sequence[Operand], kind: Kind) -> bool:
         """Return whether evaluation of a node calls Python functions lane by lane, which may be the program's own."""
         return self.calls_code or self.is_python(operands, kind)
+
+
+stacking: Final = partial(Operation, stacks=True)
+"""Makes an operation that is elementwise over all leading dimensions, so that it stacks."""
 
 
 def by_lane(_call: Call, *_columns: Column) -> Column:

@@ -14,7 +14,7 @@ from scenic.domains.driving.line_directions import Segments
 from scenic.domains.driving.surfaces import frames_of
 from scenic.graph import quaternions
 from scenic.graph.kinds import Column, Kind
-from scenic.graph.operation import Call, Operation, always
+from scenic.graph.operation import Call, always, stacking
 from scenic.runtime.geometry.flat.cell_index import CellIndex
 from scenic.runtime.geometry.ragged import expand
 from scenic.runtime.regions.fields import TabulatedField
@@ -356,10 +356,9 @@ def _frames(call: Call, points: Column) -> Column:
     return field.frames(points.reshape(-1, 3)).reshape(*points.shape[:-1], 4)
 
 
-_FRAME = Operation(
+_FRAME = stacking(
     "direction of roads in space",
     always(Kind.ORIENTATION),
     _frames,
     "The direction of traffic at a point, pitched and rolled with the road; payload the field.",
-    stacks=True,
 )

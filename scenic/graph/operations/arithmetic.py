@@ -10,7 +10,7 @@ from scenic.graph import intervals
 from scenic.graph.bounds import Bounds
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.node import Node
-from scenic.graph.operation import BoundsReading, Call, KindRule, Operation
+from scenic.graph.operation import BoundsReading, Call, KindRule, stacking
 from scenic.graph.operations.inverse_readings import before_rounding, collapsed
 from scenic.graph.operations.numbers import (
     are_exact,
@@ -210,7 +210,7 @@ def _over_one(operands: Sequence[Node], _payload: object) -> Node | None:
 
 
 OPERATIONS = (
-    Operation(
+    stacking(
         "add",
         _kind(_add_bounds, (True, True)),
         _elementwise(np.add),
@@ -219,11 +219,10 @@ OPERATIONS = (
         bounds=where_defined(_add_bounds, (True, True)),
         inverse=_add_inverse,
         solver=componentwise(lambda _terms, a, b: a + b, (True, True)),
-        stacks=True,
         rewrite=_without_zero,
         scalar=_add_scalar,
     ),
-    Operation(
+    stacking(
         "subtract",
         _kind(_subtract_bounds, (True, True)),
         _elementwise(np.subtract),
@@ -232,11 +231,10 @@ OPERATIONS = (
         bounds=where_defined(_subtract_bounds, (True, True)),
         inverse=_subtract_inverse,
         solver=componentwise(lambda _terms, a, b: a - b, (True, True)),
-        stacks=True,
         rewrite=_minus_zero,
         scalar=_subtract_scalar,
     ),
-    Operation(
+    stacking(
         "multiply",
         _kind(_multiply_bounds, (True, False), (False, True)),
         _elementwise(np.multiply),
@@ -245,11 +243,10 @@ OPERATIONS = (
         bounds=where_defined(_multiply_bounds, (True, False), (False, True)),
         inverse=_multiply_inverse,
         solver=componentwise(lambda _terms, a, b: a * b, (True, False), (False, True)),
-        stacks=True,
         rewrite=_times_one,
         scalar=_multiply_scalar,
     ),
-    Operation(
+    stacking(
         "divide",
         _divide_kind,
         _divide,
@@ -259,11 +256,10 @@ OPERATIONS = (
         inverse=_divide_inverse,
         solver=componentwise(lambda _terms, a, b: a / b, (True, False)),
         faults=may_divide_by_zero,
-        stacks=True,
         rewrite=_over_one,
         scalar=_divide_scalar,
     ),
-    Operation(
+    stacking(
         "negative",
         _kind(_negative_bounds, (True,)),
         _elementwise(np.negative),
@@ -272,10 +268,9 @@ OPERATIONS = (
         bounds=where_defined(_negative_bounds, (True,)),
         inverse=lambda _payload, result, _a: [intervals.negative(result)],
         solver=componentwise(lambda _terms, a: -a, (True,)),
-        stacks=True,
         scalar=_negative_scalar,
     ),
-    Operation(
+    stacking(
         "positive",
         _kind(_positive_bounds, (True,)),
         _elementwise(np.positive),
@@ -284,9 +279,8 @@ OPERATIONS = (
         bounds=where_defined(_positive_bounds, (True,)),
         inverse=lambda _payload, result, _a: [result],
         solver=componentwise(lambda _terms, a: a, (True,)),
-        stacks=True,
     ),
-    Operation(
+    stacking(
         "absolute",
         arithmetic_kind(_absolute_bounds),
         _elementwise(np.abs),
@@ -295,7 +289,6 @@ OPERATIONS = (
         bounds=where_defined(_absolute_bounds),
         inverse=_absolute_inverse,
         solver=componentwise(lambda terms, a: terms.either(a >= terms.real(0), a, -a)),
-        stacks=True,
     ),
 )
 

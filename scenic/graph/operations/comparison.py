@@ -14,10 +14,10 @@ from scenic.graph.operation import (
     BoundsReading,
     Call,
     InverseReading,
-    Operation,
     SolverReading,
     Terms,
     always,
+    stacking,
 )
 from scenic.graph.operations.inverse_readings import Mask, certain, truth, where
 from scenic.graph.operations.numbers import are_exact, lane_by_lane
@@ -241,7 +241,7 @@ def _orders_vectors(operands: Sequence[Node], _payload: object) -> bool:
 
 OPERATIONS = (
     *(
-        Operation(
+        stacking(
             name,
             always(Kind.BOOLEAN),
             _order(compare, sign),
@@ -251,7 +251,6 @@ OPERATIONS = (
             inverse=_order_inverse(strict="=" not in sign, swapped=">" in sign),
             solver=_order_solver(compare),
             faults=_orders_vectors,
-            stacks=True,
         )
         for name, sign, compare in (
             ("less", "<", operator.lt),
@@ -260,7 +259,7 @@ OPERATIONS = (
             ("greater or equal", ">=", operator.ge),
         )
     ),
-    Operation(
+    stacking(
         "equal",
         always(Kind.BOOLEAN),
         _same,
@@ -269,9 +268,8 @@ OPERATIONS = (
         bounds=_equal_bounds,
         inverse=lambda _payload, result, a, b: _meet_where(certain(result)[0], a, b),
         solver=_equal_solver,
-        stacks=True,
     ),
-    Operation(
+    stacking(
         "not equal",
         always(Kind.BOOLEAN),
         lambda call, a, b: ~_same(call, a, b),
@@ -280,10 +278,9 @@ OPERATIONS = (
         bounds=_differs_bounds,
         inverse=lambda _payload, result, a, b: _meet_where(certain(result)[1], a, b),
         solver=lambda terms, payload, a, b: ~_equal_solver(terms, payload, a, b),
-        stacks=True,
     ),
     *(
-        Operation(
+        stacking(
             name,
             _extreme_kind,
             _extreme(better),
@@ -292,7 +289,6 @@ OPERATIONS = (
             bounds=_fold_bounds(fold),
             inverse=inverse,
             solver=_extreme_solver(better),
-            stacks=True,
         )
         for name, better, python, fold, inverse in (
             ("minimum", operator.lt, min, intervals.minimum, _minimum_inverse),

@@ -9,7 +9,7 @@ import numpy as np
 from scenic.graph.bounds import Bounds
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.node import Node
-from scenic.graph.operation import Call, Operation, Terms, always, by_lane
+from scenic.graph.operation import Call, Operation, Terms, always, by_lane, stacking
 from scenic.graph.operations.inverse_readings import before_rounding, certain, truth, where
 
 
@@ -89,7 +89,7 @@ def _may_miss(operands: Sequence[Node], _payload: object) -> bool:
 
 
 OPERATIONS = (
-    Operation(
+    stacking(
         "float",
         always(Kind.SCALAR),
         lambda _call, number: number.astype(np.float64),
@@ -98,7 +98,6 @@ OPERATIONS = (
         bounds=lambda _payload, number: number if number.lower.ndim == 1 else None,
         inverse=lambda _payload, result, _number: [before_rounding(result)],
         solver=lambda terms, _payload, number: terms.number(number),
-        stacks=True,
     ),
     Operation("str", always(Kind.OTHER), by_lane, "Python's `str`.", python=str),
     Operation("len", _len_kind, _len, "Python's `len`.", python=len, bounds=_len_bounds, solver=_len_solver),
@@ -112,7 +111,7 @@ OPERATIONS = (
         solver=_getitem_solver,
         faults=_may_miss,
     ),
-    Operation(
+    stacking(
         "truth",
         always(Kind.BOOLEAN),
         _truth,
@@ -121,6 +120,5 @@ OPERATIONS = (
         bounds=_truth_bounds,
         inverse=_truth_inverse,
         solver=_truth_solver,
-        stacks=True,
     ),
 )

@@ -16,7 +16,7 @@ from scenic.graph.bounds import Bounds, Floats, outward
 from scenic.graph.construction import make_node
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.node import Node
-from scenic.graph.operation import Call, Operation, Terms, always
+from scenic.graph.operation import Call, Operation, Terms, always, stacking
 from scenic.graph.operations.choosing import can_give, choose, hull_of_possible, joined_kind
 from scenic.graph.operations.inverse_readings import Mask, before_rounding, where
 from scenic.graph.operations.normal_functions import ndtr, ndtri
@@ -188,7 +188,7 @@ def _lookup_solver(terms: Terms, payload: LookupTable, index: Any) -> Any:
     return chain(terms, index, options)
 
 
-LOOKUP: Final = Operation(
+LOOKUP: Final = stacking(
     "look-up",
     lambda _operands, payload: payload.kind,
     _lookup,
@@ -196,7 +196,6 @@ LOOKUP: Final = Operation(
     bounds=_lookup_bounds,
     inverse=_lookup_inverse,
     solver=_lookup_solver,
-    stacks=True,
 )
 
 
@@ -560,7 +559,7 @@ SELECT: Final = Operation(
 )
 
 OPERATIONS = (
-    Operation(
+    stacking(
         "range",
         always(Kind.SCALAR),
         _range,
@@ -569,17 +568,15 @@ OPERATIONS = (
         inverse=_range_inverse,
         solver=_range_solver,
         faults=lambda operands, _payload: not (is_finite(operands[1]) and is_finite(operands[2])),
-        stacks=True,
     ),
-    Operation(
+    stacking(
         "piecewise",
         always(Kind.SCALAR),
         _piecewise,
         "A real number with a piecewise constant density; payload cumulative probabilities from 0 on, and edges.",
         bounds=_piecewise_bounds,
-        stacks=True,
     ),
-    Operation(
+    stacking(
         "normal",
         always(Kind.SCALAR),
         _normal,
@@ -587,9 +584,8 @@ OPERATIONS = (
         bounds=_normal_bounds,
         inverse=_normal_inverse,
         solver=lambda terms, _payload, _axis, _mean, _deviation: terms.fresh(Kind.SCALAR),
-        stacks=True,
     ),
-    Operation(
+    stacking(
         "truncated normal",
         always(Kind.SCALAR),
         _truncated_normal,
@@ -598,9 +594,8 @@ OPERATIONS = (
         inverse=_truncated_inverse,
         solver=_truncated_solver,
         faults=_may_be_narrow,
-        stacks=True,
     ),
-    Operation(
+    stacking(
         "discrete range",
         always(Kind.INTEGER),
         _discrete_range,
@@ -614,10 +609,9 @@ OPERATIONS = (
         ),
         rejects=_may_be_empty,
         missing="whole number in the range",
-        stacks=True,
         cuts=_discrete_cuts,
     ),
-    Operation(
+    stacking(
         "weighted integer",
         always(Kind.INTEGER),
         _weighted_integer,
@@ -625,10 +619,9 @@ OPERATIONS = (
         bounds=_weighted_bounds,
         inverse=_weighted_inverse,
         solver=_weighted_solver,
-        stacks=True,
         cuts=lambda payload, _operands: _between_options(payload[1]),
     ),
-    Operation(
+    stacking(
         "choice",
         always(Kind.INTEGER),
         _choice,
@@ -636,7 +629,6 @@ OPERATIONS = (
         bounds=lambda payload, axis: _position_bounds(axis, payload),
         inverse=lambda payload, result, _axis: [_position_inverse(result, payload)],
         solver=_choice_solver,
-        stacks=True,
         cuts=lambda payload, _operands: _between_options(payload),
     ),
     SELECT,

@@ -11,7 +11,7 @@ from scenic.graph.bounding import overall
 from scenic.graph.bounds import Bounds
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.node import Node
-from scenic.graph.operation import Call, Operation, Terms, always
+from scenic.graph.operation import Call, Terms, always, stacking
 from scenic.graph.operations.inverse_readings import sides
 from scenic.graph.operations.possible_faults import may_be_infinite
 from scenic.graph.operations.solver_readings import root_of_squares, within
@@ -142,7 +142,7 @@ def _already_normal(operands: Sequence[Node], _payload: object) -> Node | None:
 
 
 OPERATIONS = (
-    Operation(
+    stacking(
         "sin",
         always(Kind.SCALAR),
         _periodic(math.sin),
@@ -151,10 +151,9 @@ OPERATIONS = (
         bounds=sin_bounds,
         solver=_wave_solver,
         faults=may_be_infinite,
-        stacks=True,
         scalar=lambda _payload, angle: math.sin(angle),
     ),
-    Operation(
+    stacking(
         "cos",
         always(Kind.SCALAR),
         _periodic(math.cos),
@@ -163,10 +162,9 @@ OPERATIONS = (
         bounds=cos_bounds,
         solver=_wave_solver,
         faults=may_be_infinite,
-        stacks=True,
         scalar=lambda _payload, angle: math.cos(angle),
     ),
-    Operation(
+    stacking(
         "tan",
         always(Kind.SCALAR),
         _periodic(math.tan),
@@ -175,10 +173,9 @@ OPERATIONS = (
         bounds=_tan_bounds,
         solver=lambda terms, _payload, _angle: terms.fresh(Kind.SCALAR),
         faults=may_be_infinite,
-        stacks=True,
         scalar=lambda _payload, angle: math.tan(angle),
     ),
-    Operation(
+    stacking(
         "hypot",
         always(Kind.SCALAR),
         _hypot,
@@ -187,9 +184,8 @@ OPERATIONS = (
         bounds=lambda _payload, *parts: length_bounds(parts),
         inverse=lambda _payload, result, *parts: sides(result, parts),
         solver=lambda terms, _payload, *parts: root_of_squares(terms, [terms.number(part) for part in parts]),
-        stacks=True,
     ),
-    Operation(
+    stacking(
         "normalize angle",
         always(Kind.SCALAR),
         lambda _call, angle: normalize_angle(angle.astype(np.float64)),
@@ -198,7 +194,6 @@ OPERATIONS = (
         bounds=_normalize_bounds,
         inverse=_normalize_inverse,
         solver=_normalize_solver,
-        stacks=True,
         rewrite=_already_normal,
         scalar=lambda _payload, angle: normal_angle(float(angle)),
     ),

@@ -11,7 +11,7 @@ from scenic.graph.bounding import overall, whole_limits
 from scenic.graph.bounds import Bounds
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.node import Node
-from scenic.graph.operation import Call, Operation, Terms, always, by_lane
+from scenic.graph.operation import Call, Operation, Terms, always, by_lane, stacking
 from scenic.graph.operations.inverse_readings import before_rounding
 from scenic.graph.operations.numbers import (
     arithmetic_kind,
@@ -204,7 +204,7 @@ def _int_solver(terms: Terms, number: Any) -> Any:
 
 
 OPERATIONS = (
-    Operation(
+    stacking(
         "floor divide",
         arithmetic_kind(_floor_divide_bounds),
         _floor_divide,
@@ -214,9 +214,8 @@ OPERATIONS = (
         inverse=_floor_divide_inverse,
         solver=componentwise(_floor_divide_solver),
         faults=may_divide_by_zero,
-        stacks=True,
     ),
-    Operation(
+    stacking(
         "modulo",
         arithmetic_kind(_modulo_bounds),
         _modulo,
@@ -225,7 +224,6 @@ OPERATIONS = (
         bounds=where_defined(_modulo_bounds),
         solver=componentwise(_modulo_solver),
         faults=may_divide_by_zero,
-        stacks=True,
     ),
     Operation(
         "divmod",
@@ -234,7 +232,7 @@ OPERATIONS = (
         "Python's `divmod`: quotient and remainder as a tuple.",
         python=divmod,
     ),
-    Operation(
+    stacking(
         "power",
         _power_kind,
         _power,
@@ -244,9 +242,8 @@ OPERATIONS = (
         inverse=_power_inverse,
         solver=componentwise(_power_solver),
         faults=True,
-        stacks=True,
     ),
-    Operation(
+    stacking(
         "round",
         _round_kind,
         _round,
@@ -256,9 +253,8 @@ OPERATIONS = (
         inverse=_round_inverse,
         solver=componentwise(_round_solver),
         faults=lambda operands, _payload: len(operands) > 1,
-        stacks=True,
     ),
-    Operation(
+    stacking(
         "int",
         _int_kind,
         lambda _call, number: _whole(np.trunc(number)) if number.dtype == np.float64 else as_integers(number),
@@ -267,6 +263,5 @@ OPERATIONS = (
         bounds=where_defined(_int_bounds),
         inverse=_int_inverse,
         solver=componentwise(_int_solver),
-        stacks=True,
     ),
 )

@@ -11,7 +11,7 @@ import numpy as np
 
 from scenic.graph.bounds import Bounds
 from scenic.graph.kinds import Column, Kind
-from scenic.graph.operation import OK, Call, Operation, Terms, always
+from scenic.graph.operation import OK, Call, Operation, Terms, always, stacking
 from scenic.graph.operations.choosing import can_give, choose, hull_of_possible, joined_kind
 from scenic.graph.operations.inverse_readings import certain, truth, where
 from scenic.graph.operations.solver_readings import chain, conjunction, disjunction
@@ -110,7 +110,7 @@ def _if_solver(terms: Terms, _payload: object, test: object, then: object, other
 
 
 OPERATIONS = (
-    Operation(
+    stacking(
         "and",
         always(Kind.BOOLEAN),
         lambda call, *columns: _decide(call, columns, decisive=False),
@@ -120,9 +120,8 @@ OPERATIONS = (
         inverse=_and_inverse,
         solver=lambda _terms, _payload, *operands: conjunction(operands),
         strict=False,
-        stacks=True,
     ),
-    Operation(
+    stacking(
         "or",
         always(Kind.BOOLEAN),
         lambda call, *columns: _decide(call, columns, decisive=True),
@@ -132,9 +131,8 @@ OPERATIONS = (
         inverse=_or_inverse,
         solver=lambda _terms, _payload, *operands: disjunction(operands),
         strict=False,
-        stacks=True,
     ),
-    Operation(
+    stacking(
         "not",
         always(Kind.BOOLEAN),
         lambda _call, value: ~value,
@@ -143,7 +141,6 @@ OPERATIONS = (
         bounds=_not_bounds,
         inverse=lambda _payload, result, _value: [_not_bounds(None, result)],
         solver=lambda _terms, _payload, value: ~value,
-        stacks=True,
     ),
     Operation(
         "if",

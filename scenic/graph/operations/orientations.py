@@ -11,7 +11,7 @@ from scenic.graph.bounds import Bounds
 from scenic.graph.construction import make_node
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.node import Node, constant
-from scenic.graph.operation import Call, Operation, Terms, always
+from scenic.graph.operation import Call, Terms, always, stacking
 from scenic.graph.operations.arithmetic import ADD, NEGATIVE
 from scenic.graph.operations.functions import (
     NORMALIZE_ANGLE,
@@ -200,13 +200,12 @@ def _euler_solver(terms: Terms, payload: int, _orientation: object) -> Any:
 
 # Simpler nodes of the same value. Most things stand upright: a rotation about the vertical axis is one angle.
 
-FROM_YAW: Final = Operation(
+FROM_YAW: Final = stacking(
     "from yaw",
     always(Kind.ORIENTATION),
     lambda _call, yaw: quaternions.from_yaw(yaw),
     "The orientation of a rotation about the vertical axis (radians).",
     bounds=_from_yaw_bounds,
-    stacks=True,
     scalar=_from_yaw_scalar,
 )
 
@@ -267,38 +266,35 @@ def _angle_of_yaw(operands: Sequence[Node], payload: int) -> Node | None:
 
 OPERATIONS = (
     FROM_YAW,
-    Operation(
+    stacking(
         "from euler",
         always(Kind.ORIENTATION),
         _from_euler,
         "The orientation of intrinsic rotations about Z, the new X and the new Y (radians).",
         bounds=_from_euler_bounds,
-        stacks=True,
         rewrite=_only_yaw,
         scalar=_from_euler_scalar,
     ),
-    Operation(
+    stacking(
         "compose",
         always(Kind.ORIENTATION),
         _compose,
         "The second orientation read in the frame of the first.",
         bounds=_compose_bounds,
-        stacks=True,
         rewrite=_with_identity,
         scalar=lambda _payload, outer, inner: quaternions.product(outer, inner),
     ),
-    Operation(
+    stacking(
         "inverse",
         always(Kind.ORIENTATION),
         _inverse,
         "The opposite rotation.",
         bounds=lambda _payload, orientation: _conjugated(orientation),
         inverse=lambda _payload, result, _orientation: [_conjugated(result)],
-        stacks=True,
         rewrite=_twice_inverse,
         scalar=lambda _payload, q: (-q[0], -q[1], -q[2], q[3]),
     ),
-    Operation(
+    stacking(
         "rotate",
         always(Kind.VECTOR),
         _rotate,
@@ -309,29 +305,26 @@ OPERATIONS = (
             turned_by(matrix(_conjugated(orientation)), result),
         ],
         solver=_rotate_solver,
-        stacks=True,
         rewrite=_not_turned,
         scalar=lambda _payload, orientation, vector: quaternions.turned(orientation, vector),
     ),
-    Operation(
+    stacking(
         "euler",
         always(Kind.SCALAR),
         _euler,
         "One Euler angle of an orientation in radians; payload 0 yaw, 1 pitch, 2 roll.",
         bounds=_euler_bounds,
         solver=_euler_solver,
-        stacks=True,
         rewrite=_angle_of_yaw,
         scalar=lambda payload, orientation: quaternions.euler_angle(orientation, payload),
     ),
-    Operation(
+    stacking(
         "quaternion",
         always(Kind.SCALAR),
         _quaternion,
         "One component of the unit quaternion of an orientation; payload 0 to 3 for x, y, z, w.",
         bounds=lambda payload, orientation: intervals.component(orientation, payload),
         solver=lambda _terms, payload, orientation: orientation[payload],
-        stacks=True,
         scalar=lambda payload, orientation: orientation[payload],
     ),
 )

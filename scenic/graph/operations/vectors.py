@@ -10,7 +10,7 @@ from scenic.graph import intervals
 from scenic.graph.bounds import Bounds
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.node import Node
-from scenic.graph.operation import Call, Operation, Terms, always
+from scenic.graph.operation import Call, Terms, always, stacking
 from scenic.graph.operations.functions import length_bounds
 from scenic.graph.operations.inverse_readings import before_rounding, sides
 from scenic.graph.operations.solver_readings import root_of_squares, within
@@ -236,7 +236,7 @@ def _part_of_vector(operands: Sequence[Node], payload: int) -> Node | None:
 
 
 OPERATIONS = (
-    Operation(
+    stacking(
         "vector",
         always(Kind.VECTOR),
         _vector,
@@ -244,10 +244,9 @@ OPERATIONS = (
         bounds=lambda _payload, *parts: intervals.stacked(parts),
         inverse=lambda _payload, result, *_parts: intervals.components(result),
         solver=lambda terms, _payload, *parts: tuple(terms.number(part) for part in parts),
-        stacks=True,
         scalar=lambda _payload, x, y, z: (float(x), float(y), float(z)),
     ),
-    Operation(
+    stacking(
         "component",
         always(Kind.SCALAR),
         lambda call, vector: np.ascontiguousarray(vector[..., call.payload]),
@@ -255,11 +254,10 @@ OPERATIONS = (
         bounds=lambda payload, vector: intervals.component(vector, payload),
         inverse=_component_inverse,
         solver=lambda _terms, payload, vector: vector[payload],
-        stacks=True,
         rewrite=_part_of_vector,
         scalar=lambda payload, vector: vector[payload],
     ),
-    Operation(
+    stacking(
         "norm",
         always(Kind.SCALAR),
         _norm,
@@ -267,10 +265,9 @@ OPERATIONS = (
         bounds=_norm_bounds,
         inverse=_norm_inverse,
         solver=lambda terms, _payload, vector: root_of_squares(terms, vector),
-        stacks=True,
         scalar=_norm_scalar,
     ),
-    Operation(
+    stacking(
         "dot",
         always(Kind.SCALAR),
         _dot,
@@ -278,20 +275,18 @@ OPERATIONS = (
         bounds=_dot_bounds,
         inverse=_dot_inverse,
         solver=lambda _terms, _payload, a, b: a[0] * b[0] + a[1] * b[1] + a[2] * b[2],
-        stacks=True,
         scalar=lambda _payload, a, b: a[0] * b[0] + a[1] * b[1] + a[2] * b[2],
     ),
-    Operation(
+    stacking(
         "cross",
         always(Kind.VECTOR),
         _cross,
         "Vector product of two vectors.",
         bounds=_cross_bounds,
         solver=lambda _terms, _payload, a, b: tuple(a[i] * b[j] - a[j] * b[i] for i, j in _TURNS),
-        stacks=True,
         scalar=_cross_scalar,
     ),
-    Operation(
+    stacking(
         "distance",
         always(Kind.SCALAR),
         _distance,
@@ -299,37 +294,33 @@ OPERATIONS = (
         bounds=lambda _payload, a, b: length_bounds(intervals.components(intervals.subtract(a, b))),
         inverse=_distance_inverse,
         solver=_distance_solver,
-        stacks=True,
         scalar=lambda _payload, a, b: _norm_scalar(None, (a[0] - b[0], a[1] - b[1], a[2] - b[2])),
     ),
-    Operation(
+    stacking(
         "azimuth",
         always(Kind.SCALAR),
         _azimuth,
         "Direction of a vector in the horizontal plane: radians from North, anticlockwise, within [-pi, pi].",
         bounds=_azimuth_bounds,
         solver=lambda terms, _payload, _vector: within(terms, -math.pi, math.pi),
-        stacks=True,
         scalar=lambda _payload, vector: normal_angle(float(np.arctan2(vector[1], vector[0])) - np.pi / 2),
     ),
-    Operation(
+    stacking(
         "altitude",
         always(Kind.SCALAR),
         _altitude,
         "Radians by which a vector rises above the horizon.",
         bounds=_altitude_bounds,
         solver=lambda terms, _payload, _vector: within(terms, -math.pi / 2, math.pi / 2),
-        stacks=True,
         scalar=_altitude_scalar,
     ),
-    Operation(
+    stacking(
         "normalized",
         always(Kind.VECTOR),
         _normalized,
         "The unit vector of the same direction; zero stays.",
         bounds=_normalized_bounds,
         solver=lambda terms, _payload, _vector: tuple(within(terms, -1.0, 1.0) for _ in range(3)),
-        stacks=True,
         scalar=_normalized_scalar,
     ),
 )

@@ -11,7 +11,7 @@ from typing import Any, Final
 from scenic.graph.construction import make_node
 from scenic.graph.kinds import Column, Kind, boxed
 from scenic.graph.node import Graph
-from scenic.graph.operation import Call, Operation, always
+from scenic.graph.operation import Call, Operation, always, stacking
 from scenic.runtime.ground.context import Context, current, here
 from scenic.runtime.instances.mutators import KEPT, active, is_built_in
 from scenic.runtime.instances.objects import Point
@@ -89,13 +89,12 @@ def _same(_call: Call, column: Column) -> Column:
     return column
 
 
-_LATE = Operation(
+_LATE = stacking(
     "drawn instance",
     lambda _operands, payload: payload,
     _same,
     "A property of an instance as a choice draws it, mutated; payload its kind.",
     pure=False,
-    stacks=True,
 )
 
 _BOXED = Operation(

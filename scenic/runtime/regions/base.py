@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from scenic.graph.bounds import Bounds
 from scenic.graph.kinds import Column, Kind
-from scenic.graph.operation import Call, Operation, always
+from scenic.graph.operation import Call, Operation, always, stacking
 from scenic.language.errors import (
     InvalidScenarioError,
     RejectionException,
@@ -525,14 +525,13 @@ def _contains_body(call: Call, *columns: Column) -> Column:
     return stack.restored(np.asarray(inside, dtype=np.bool_))
 
 
-CONTAINS_BODY = Operation(
+CONTAINS_BODY = stacking(
     "region contains object",
     always(Kind.BOOLEAN),
     _contains_body,
     "Whether a region holds a whole object.",
     bounds=containment_bounds,
     inverse=containment_inverse,
-    stacks=True,
     partial=True,
 )
 
@@ -547,13 +546,12 @@ def _meets_bounds(region: Region, *operands: Bounds | None) -> Bounds:
     return only_within(body_box(*operands[:3]), region.container_extent(*operands[4:]), np.zeros(1))
 
 
-MEETS_BODY = Operation(
+MEETS_BODY = stacking(
     "region meets object",
     always(Kind.BOOLEAN),
     _meets_body,
     "Whether a region shares a point with an object; payload the region.",
     bounds=_meets_bounds,
-    stacks=True,
     partial=True,
 )
 
@@ -581,14 +579,13 @@ def _point_extent(region: Region, *operands: Bounds | None) -> Bounds | None:
     return None if found is None else Bounds(found.lower - SLACK, found.upper + SLACK)
 
 
-_DRAW = Operation(
+_DRAW = stacking(
     "region point",
     always(Kind.VECTOR),
     _draw,
     "A uniform point of a region, from uniform numbers and a key; rejected where the region is empty.",
     bounds=_point_extent,
     cuts=lambda region, operands: region.draw_cuts() if operands and operands[0].is_axis else None,
-    stacks=True,
     partial=True,
     rejects=lambda _operands, payload: bool(payload.may_find_none),
     missing="point of the region",

@@ -11,7 +11,7 @@ from scenic.dataclass import dataclass
 from scenic.graph import intervals
 from scenic.graph.bounds import Bounds
 from scenic.graph.kinds import Column, Kind
-from scenic.graph.operation import Call, Operation, always
+from scenic.graph.operation import Call, Operation, always, stacking
 from scenic.language.errors import ScenicTypeError
 from scenic.runtime.geometry.contact.collision import Body, collide
 from scenic.runtime.geometry.contact.scalar_bodies import gap
@@ -499,24 +499,25 @@ def _may_have_no_face(operands: Sequence[Any], payload: Any) -> bool:
     return bool((faces < 0).any())
 
 
-_FACE = Operation(
+_FACE = stacking(
     "surface face",
     always(Kind.INTEGER),
     _face,
     "A face of a side, by area; the candidate is rejected where the side has none.",
     rejects=_may_have_no_face,
     missing="surface to stand on",
-    stacks=True,
 )
-_FACE_POINT = Operation(
-    "face point", always(Kind.VECTOR), _face_point, "A uniform point of a face.", stacks=True
+_FACE_POINT = stacking(
+    "face point",
+    always(Kind.VECTOR),
+    _face_point,
+    "A uniform point of a face.",
 )
-_FACE_ORIENTATION = Operation(
+_FACE_ORIENTATION = stacking(
     "face orientation",
     always(Kind.ORIENTATION),
     _face_orientation,
     "The preferred orientation of a face.",
-    stacks=True,
 )
 
 
@@ -543,22 +544,23 @@ def _rows(*columns: Column) -> int:
     return max(len(column) for column in columns)
 
 
-_MEAN_NORMAL = Operation(
+_MEAN_NORMAL = stacking(
     "mean normal",
     always(Kind.VECTOR),
     _mean_normal,
     "The direction in which things land on a side.",
-    stacks=True,
 )
-_LANDING_FACE = Operation(
+_LANDING_FACE = stacking(
     "landing face",
     always(Kind.INTEGER),
     _landing_face,
     "The face of a side where a point lands; the candidate is rejected where it misses.",
     rejects=True,
     missing="place to land on",
-    stacks=True,
 )
-_LANDING_POINT = Operation(
-    "landing point", always(Kind.VECTOR), _landing_point, "Where a point lands on a face.", stacks=True
+_LANDING_POINT = stacking(
+    "landing point",
+    always(Kind.VECTOR),
+    _landing_point,
+    "Where a point lands on a face.",
 )

@@ -15,7 +15,7 @@ from scenic.graph import quaternions
 from scenic.graph.bounds import Bounds
 from scenic.graph.intervals import EPSILON
 from scenic.graph.kinds import Column, Kind
-from scenic.graph.operation import Call, Operation, always
+from scenic.graph.operation import Call, always, stacking
 from scenic.graph.operations.distributions import LOOKUP, LookupTable
 from scenic.runtime.geometry.meshes.bodies import Body
 from scenic.runtime.geometry.meshes.mesh import Mesh
@@ -62,13 +62,12 @@ def _point_bounds(payload: Triangles, face: Bounds, *_uniforms: Bounds) -> Bound
     )
 
 
-_POINT: Final = Operation(
+_POINT: Final = stacking(
     "point of triangles",
     always(Kind.VECTOR),
     _point,
     "A uniform point of the triangle of a table that an index draws.",
     bounds=_point_bounds,
-    stacks=True,
 )
 
 

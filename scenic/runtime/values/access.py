@@ -12,12 +12,20 @@ from scenic.graph import construction
 from scenic.graph.bounds import Bounds
 from scenic.graph.kinds import Kind
 from scenic.graph.node import Node
-from scenic.graph.operation import Call, Operation, always, by_lane
+from scenic.graph.operation import Call, Operation, always, by_lane, stacking
 from scenic.graph.operations import TABLE
 from scenic.language.errors import RejectionException
 from scenic.runtime.ground.context import here
 from scenic.runtime.values.applying import apply, operate
-from scenic.runtime.values.choices import MISSING, MOST_OPTIONS, REJECTED, drawn_option, rejection, select
+from scenic.runtime.values.choices import (
+    MISSING,
+    MOST_OPTIONS,
+    REJECTED,
+    drawn_option,
+    reject_all,
+    rejection,
+    select,
+)
 from scenic.runtime.values.class_members import member
 from scenic.runtime.values.frozen import is_frozen
 from scenic.runtime.values.generic import call_later
@@ -304,22 +312,17 @@ def _with_instances(value: object) -> bool:
     return holds_instances(value.node) if isinstance(value, RandomBase) else kind_of(value) is Kind.OBJECT
 
 
-def _nothing(call: Call) -> Any:
-    call.reject(np.ones(1, dtype=np.bool_))
-    return np.empty(1, dtype=object)
-
-
 _NOTHING = Operation(
     "nothing",
     always(Kind.OTHER),
-    _nothing,
+    reject_all,
     "An element of an empty list; a sample that draws it is rejected.",
     pure=False,
     rejects=True,
 )
 
 
-_PLACE = Operation(
+_PLACE = stacking(
     "place in a list",
     always(Kind.INTEGER),
     lambda call, draw: np.minimum((draw * call.payload).astype(np.int64), call.payload - 1),
@@ -328,7 +331,6 @@ _PLACE = Operation(
         np.clip(np.floor(draw.lower * count) - 1, 0, count - 1),
         np.clip(np.floor(draw.upper * count) + 1, 0, count - 1),
     ),
-    stacks=True,
 )
 
 

@@ -168,7 +168,8 @@ def rejection(error: RejectionException) -> Node:
     return construction.make_node(REJECTED, (), str(error), here())
 
 
-def _rejected(call: Call) -> Any:
+def reject_all(call: Call) -> Any:
+    """Reject the lanes of a call; returns a column without a value."""
     call.reject(np.ones(1, dtype=np.bool_))
     return np.empty(1, dtype=object)
 
@@ -176,7 +177,7 @@ def _rejected(call: Call) -> Any:
 REJECTED = Operation(
     "rejected option",
     always(Kind.OTHER),
-    _rejected,
+    reject_all,
     "What an option of a choice refuses to give; a sample that draws it is rejected. The payload says why.",
     pure=False,
     rejects=True,
