@@ -96,6 +96,10 @@ def test_a_trajectory_must_be_one_that_can_be_driven(folder: Path) -> None:
     assert span is not None
     line = text.split("\n")[span.line - 4]
     assert line[span.column : span.end_column] == "[left.endLane, own]", "the argument is marked, not the car"
+    with pytest.raises(
+        InvalidScenarioError, match=r"is 95 m from road3_lane., in which its trajectory begins"
+    ):
+        simulated(folder, LEFT + WEST.format(more=", trajectory=[network.laneAt((-35, -1.75))]"), "cross", 2)
     with pytest.raises(TypeError, match="lanes or maneuvers"):
         simulated(folder, LEFT + WEST.format(more=", trajectory=own"), "cross", 2)
 

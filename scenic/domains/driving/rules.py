@@ -127,7 +127,7 @@ class RulesDriver(LaneDriver):
         super().choose(choice)
 
     def _begin_plan(self, lane: Lane, duration: float = 0.0) -> None:
-        super()._begin_plan(lane if self._route is None else self._route.begin(lane), duration)
+        super()._begin_plan(lane if self._route is None else self._route.begin(lane, self._place()), duration)
 
     def _plan_before(self, lane: Lane, *, backward: bool) -> LaneDriver | None:
         # The way that another behavior has chosen may leave the route.

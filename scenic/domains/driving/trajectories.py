@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,9 @@ from scenic.runtime.values.values import Vector
 __all__ = ["LaneRoute", "Route", "Trajectory"]
 
 Floats = NDArray[np.float64]
+
+_FAR: Final = 10.0
+"""Metres from a route from which on a car does not begin it."""
 
 
 class Trajectory:
@@ -140,9 +143,18 @@ class LaneRoute:
         self.lanes: tuple[Lane, ...] = tuple(lanes)
         self._count = 0
         """The number of lanes that have been taken."""
+        self._has_begun = False
 
-    def begin(self, lane: Lane) -> Lane:
-        """Return the lane in which to begin: the own one if it belongs to the route, or leads to it, else the first."""
+    def begin(self, lane: Lane, place: tuple[float, float]) -> Lane:
+        """Return the lane in which to begin, or to go on: the own one if it belongs to the route, or leads to it, else the first.
+
+        A car that has been moved away from its route leaves it.
+
+        Raises:
+            InvalidScenarioError: the first lane is far from the place where the car begins.
+
+        """
+        is_first, self._has_begun = not self._has_begun, True
         for number in (*range(self._count, len(self.lanes)), *range(self._count)):
             if self.lanes[number] == lane:
                 self._count = number + 1
@@ -150,6 +162,18 @@ class LaneRoute:
         self._count = 0
         if self.open_ways(_ways_from(lane)):
             return lane
+        if not is_first:
+            self._count = len(self.lanes)
+            return lane
+        import shapely
+
+        away = shapely.distance(shapely.linestrings(self.lanes[0].line), shapely.Point(*place))
+        if away > _FAR:
+            raise impossible_argument(
+                "trajectory",
+                f"the car is {away:.0f} m from {self.lanes[0].uid}, in which its trajectory begins, and in none of its lanes",
+                "put the car there, as by `new Car on LANE.centerline`",
+            )
         self._count = 1
         return self.lanes[0]
 
