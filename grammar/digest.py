@@ -11,7 +11,7 @@ DECLARATIONS = ("keywords", "operators", "specifiers", "statements")
 
 
 def grammar_digest(grammar_path: Path) -> str:
-    """The SHA-256 of the grammar and what stands beside it, the generator, the node classes that the grammar names, and the declarations."""
+    """Return the SHA-256 digest of the grammar and the files beside it, the generator, the node classes that the grammar names, and the declarations."""
     folder = Path(__file__).parent
     package = folder.parent / "scenic"
     sources = [

@@ -24,7 +24,7 @@ _PYTHON_WORDS: Final = frozenset({*keyword.kwlist, "match", "case", "type", "_"}
 
 
 def of_scenic(grammar: Grammar, nodes: Collection[str]) -> frozenset[AlternativeId]:
-    """The alternatives that no program of Python alone uses.
+    """Return the alternatives that no program of Python alone uses.
 
     They hold a word of Scenic, make one of its ``nodes``, need a rule that does, or are in a rule used by such ones only.
     """

@@ -97,7 +97,7 @@ class Position(int):
         return Position(int(self), (self.way, Match(rule, number, kept)))
 
     def through(self, other: "Position") -> "Position":
-        """The position ``other``, reached from this one by the way that it carries."""
+        """Return the position ``other``, reached from this one by the way that it carries."""
         return Position(int(other), (self.way, other.way))
 
     def matches(self) -> Iterator[Match]:
@@ -112,7 +112,7 @@ class Position(int):
 
 
 def alternatives(grammar: Grammar) -> Mapping[AlternativeId, Alternative]:
-    """The alternatives that a derivation can use, by their identity, in the order of the grammar.
+    """Return the alternatives that a derivation can use, by their identity, in the order of the grammar.
 
     Left out are rules that are only looked at, and groups of one alternative, which are used with the one around them.
     """
@@ -145,7 +145,7 @@ def _references(items: Iterable[Item]) -> Iterator[str]:
 
 
 def choices(grammar: Grammar) -> tuple[Choice, ...]:
-    """All that a text may do, in the order of the grammar."""
+    """Return all choices of a text, in the order of the grammar."""
     found: list[Choice] = []
     for identity, alternative in alternatives(grammar).items():
         rule = grammar.rules[identity.rule]
@@ -241,7 +241,7 @@ class TracingParser:
 
 
 def explain(grammar: Grammar, choice: Choice) -> str:
-    """A choice in words, with the text of its alternative."""
+    """Describe a choice in words, with the text of its alternative."""
     alternative = grammar.rules[choice.alternative.rule].alternatives[choice.alternative.number - 1]
     text = _written(grammar, alternative)
     if not choice.item:

@@ -121,7 +121,7 @@ def class_text(name: str) -> str:
 
 
 def diagnostics_text(_: str) -> str:
-    """The pages of all diagnostics, one after the other, each with its code as the target of links."""
+    """Return the pages of all diagnostics, one after the other, each with its code as the target of links."""
     return "\n".join(_page(code) for code in CODES)
 
 

@@ -16,6 +16,7 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 from docs._extensions.blocks import options_of
+from docs._extensions.drafts import IS_DRAFT, draft_size
 from docs._extensions.programs import PICTURES
 from examples import FOLDER
 from scenic.formats.camera import Outlook
@@ -30,8 +31,8 @@ from scenic.simulators.simulation import OnState
 __all__ = ["SCENARIOS", "measured", "simulated"]
 
 SCENARIOS = FOLDER / "scenarios"
-_SIZE = (480, 300)
-_FRAMES = 44
+_SIZE = draft_size((480, 300))
+_FRAMES = 4 if IS_DRAFT else 44
 _QUALITY = 62
 _MOST = 600
 """Steps of a film at most."""
@@ -58,7 +59,7 @@ def simulated(path: Path, seed: int) -> tuple[Any, PoseTape]:
 
 
 def measured(simulation: Any) -> list[str]:
-    """The least and greatest values that a simulation recorded, and what became of its requirements, in words."""
+    """Describe the least and greatest values that a simulation recorded, and the verdicts of its requirements."""
     lines = []
     for name, series in simulation.result.records.items():
         values = [value for _, value in series]
@@ -137,7 +138,7 @@ class Film(SphinxDirective):
         items = [nodes.list_item("", nodes.paragraph("", line)) for line in lines]
         text = path.read_text(encoding="utf-8").rstrip()
         return [
-            nodes.image(uri=f"/_build/pictures/{film.name}", alt=f"Film of {name}", classes=["scene"]),
+            nodes.image(uri=f"/_build/{PICTURES.name}/{film.name}", alt=f"Film of {name}", classes=["scene"]),
             nodes.bullet_list("", *items),
             nodes.raw("", f"<details><summary>examples/scenarios/{path.name}</summary>", format="html"),
             nodes.literal_block(text, text, language="scenic"),

@@ -127,7 +127,7 @@ def _text_before(lines: list[str]) -> str:
 
 
 def snippets_text() -> str:
-    """``snippets.jsonl``."""
+    """Return the text of ``snippets.jsonl``."""
     return "".join(json.dumps(each, ensure_ascii=False) + "\n" for each in snippets())
 
 

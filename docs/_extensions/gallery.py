@@ -43,13 +43,13 @@ _OPTIONS = {
 
 
 def themes() -> Iterator[tuple[str, str, list[Path]]]:
-    """Folder, title and programs of each theme."""
+    """Return the folder, title and programs of each theme."""
     for folder, title in _THEMES.items():
         yield folder, title, sorted((FOLDER / folder).glob("*.scenic"))
 
 
 def header(path: Path) -> str:
-    """The description at the beginning of a program."""
+    """Return the description at the beginning of a program."""
     quoted, _, _ = path.read_text(encoding="utf-8").removeprefix('"""').partition('"""')
     return " ".join(ast.literal_eval(f'"""{quoted}"""').split())
 
@@ -71,7 +71,7 @@ class _Gallery(SphinxDirective):
             name = f"{folder}/{path.name}"
             section += nodes.container(
                 "",
-                nodes.image(uri=f"/_build/pictures/{picture.name}", alt=header(path)),
+                nodes.image(uri=f"/_build/{PICTURES.name}/{picture.name}", alt=header(path)),
                 *self.parse_text_to_nodes(f"**{path.stem.replace('_', ' ')}** {header(path)}"),
                 nodes.raw("", f"<details><summary>examples/{name}</summary>", format="html"),
                 nodes.literal_block(text, text, language="scenic"),

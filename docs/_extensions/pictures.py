@@ -10,6 +10,7 @@ from typing import Any
 import PIL.Image
 
 from docs._extensions import plans
+from docs._extensions.drafts import draft_size
 from examples.motion import exposed
 from scenic.formats.camera import STANDARD, Outlook, corners, framed, framing
 from scenic.formats.files import write
@@ -55,7 +56,7 @@ class Shot:
 
     @classmethod
     def of(cls, path: Path, options: Mapping[str, str], size: tuple[int, int] | None = None) -> "Shot":
-        """The shot of a program that the options of a code block describe."""
+        """Return the shot of a program that the options of a code block describe."""
         azimuth, _, elevation = options.get("from", "-35,33").replace("above", "0,90").partition(",")
         return cls(
             path,
@@ -90,7 +91,7 @@ class Shot:
 
 
 def kept_picture(shot: Shot, folder: Path) -> Path:
-    """The picture of a shot as a file of the folder, drawn if it is not there yet."""
+    """Return the picture of a shot as a file of the folder; it is drawn if it is not there yet."""
     path = folder / f"{shot.key()}.webp"
     if not path.exists():
         stream = io.BytesIO()
@@ -101,7 +102,7 @@ def kept_picture(shot: Shot, folder: Path) -> Path:
 
 
 def kept_page(shot: Shot, folder: Path, title: str) -> Path:
-    """The scenes of a shot as a page that turns them, made if it is not there yet."""
+    """Return a page that turns the scenes of a shot; it is made if it is not there yet."""
     path = folder / f"{shot.key()}.html"
     if not path.exists():
         folder.mkdir(parents=True, exist_ok=True)
@@ -114,7 +115,7 @@ def _scenes(shot: Shot) -> list[Any]:
 
 
 def _drawn(shot: Shot) -> PIL.Image.Image:
-    size = shot.size or SIZES[min(shot.count, 3)]
+    size = draft_size(shot.size or SIZES[min(shot.count, 3)])
     if shot.steps is not None:
         return _motion(shot, size)
     panels = []

@@ -32,7 +32,7 @@ class Footprint:
 
 
 def placed(thing: Any, position: Any = None, heading: float | None = None, opacity: float = 1.0) -> Footprint:
-    """The footprint of an object, where it is or at another position with another heading."""
+    """Return the footprint of an object, where it is or at another position with another heading."""
     position = thing.position if position is None else position
     heading = thing.heading if heading is None else heading
     sine, cosine = math.sin(heading), math.cos(heading)

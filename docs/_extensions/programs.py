@@ -14,11 +14,12 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 from docs._extensions.blocks import options_of
+from docs._extensions.drafts import IS_DRAFT
 from docs._extensions.pictures import Shot, kept_page, kept_picture
 from docs._extensions.running import Programs, workplace
 
 BUILD = Path(__file__).parents[1] / "_build"
-PICTURES = BUILD / "pictures"
+PICTURES = BUILD / ("drafts" if IS_DRAFT else "pictures")
 PAGES = BUILD / "scenes"
 
 
@@ -30,7 +31,7 @@ class ScenicBlock(SphinxDirective):
     final_argument_whitespace = True
 
     def run(self) -> list[nodes.Node]:
-        """The code, and a picture if the block's options request it."""
+        """Return the code, and a picture if the block's options request it."""
         code = "\n".join(self.content) + "\n"
         options = options_of(self.arguments[0]) if self.arguments else {}
         program = "\n".join(self.content)
@@ -57,7 +58,7 @@ class ScenicBlock(SphinxDirective):
             else f"{shot.count} scenes"
         )
         image: nodes.Node = nodes.image(
-            uri=f"/_build/pictures/{picture.name}",
+            uri=f"/_build/{PICTURES.name}/{picture.name}",
             alt=f"{what} of this program",
             classes=["scene"] if shot.count == 1 else [],
         )
@@ -85,14 +86,16 @@ class CameraImage(SphinxDirective):
     final_argument_whitespace = True
 
     def run(self) -> list[nodes.Node]:
-        """The images, side by side."""
+        """Return the images, side by side."""
         program, camera, *rest = self.arguments[0].split()
         options = options_of(" ".join(rest))
         with tempfile.TemporaryDirectory() as folder, workplace(Path(folder)):
             self.env.temp_data["scenic_programs"].write(Path(folder))
             shot = Shot.of(Path(folder) / f"{program}.scenic", {**options, "draw": options.get("count", "1")})
             image = kept_picture(replace(shot, camera=camera), PICTURES)
-        return [nodes.image(uri=f"/_build/pictures/{image.name}", alt=f"Images of the camera {camera}")]
+        return [
+            nodes.image(uri=f"/_build/{PICTURES.name}/{image.name}", alt=f"Images of the camera {camera}")
+        ]
 
 
 def _copy_pages(app: Sphinx, exception: Exception | None) -> None:

@@ -51,7 +51,7 @@ class Programs:
         self._texts: dict[str, str] = {}
 
     def text(self, code: str, options: Mapping[str, str]) -> str:
-        """The whole program of a block, which later blocks can extend by its name."""
+        """Return the whole program of a block, which later blocks can extend by its name."""
         before = self._texts[options["extends"]] + "\n" if "extends" in options else ""
         text = before + code
         self._texts[options.get("name", "program")] = text

@@ -43,7 +43,7 @@ def generate(grammar_path: Path, output_folder: Path) -> None:
 
 
 def modules(grammar: Grammar) -> dict[str, str]:
-    """The texts of the modules that are made of the grammar alone, by name; raises `GrammarError` if the grammar is wrong."""
+    """Return the texts of the modules that are made of the grammar alone, by name; raises `GrammarError` if the grammar is wrong."""
     analysis = Analysis(grammar)
     check(analysis)
     header = _header(grammar)

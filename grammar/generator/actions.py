@@ -61,7 +61,7 @@ def node_classes() -> dict[str, NodeClass]:
 
 
 def helper_names() -> frozenset[str]:
-    """The methods of ``scenic.compiler.actions.Actions``, and of its bases, that actions may call."""
+    """Return the methods of ``scenic.compiler.actions.Actions``, and of its bases, that actions may call."""
     return frozenset(
         method.name
         for source in sorted((SOURCES / "actions").glob("*.py"))

@@ -62,14 +62,14 @@ class Analysis:
     # Tokens.
 
     def kinds_of(self, item: Token | TokenChoice) -> frozenset[int]:
-        """The kinds that a token item matches; ``NAME`` matches soft keywords too."""
+        """Return the kinds that a token item matches; ``NAME`` matches soft keywords too."""
         if isinstance(item, TokenChoice):
             return frozenset().union(*(self.kinds_of(token) for token in item.tokens))
         kind = self.grammar.vocabulary.kind(item)
         return self.soft_kinds | {NAME} if kind == NAME else frozenset({kind})
 
     def items_of(self, alternative: Alternative) -> Iterator[Item]:
-        """The items of an alternative and all items within them."""
+        """Yield the items of an alternative and all items within them."""
         stack = [entry.item for entry in reversed(alternative.items)]
         while stack:
             item = stack.pop()
@@ -169,7 +169,7 @@ class Analysis:
                 return self._last_of_alternative((Named(item, None),), found)
 
     def first_of(self, items: Sequence[Named]) -> frozenset[int]:
-        """The kinds with which a row of items can start; all of it may be optional."""
+        """Return the kinds with which a row of items can start; all of it may be optional."""
         return self._first_of_alternative(items, self.first)
 
     def is_nullable(self, items: Sequence[Named]) -> bool:
@@ -190,7 +190,7 @@ class Analysis:
         )
 
     def leftmost(self, rule: Rule) -> set[str]:
-        """The rules that may be tried at the place where ``rule`` is tried."""
+        """Return the rules that may be tried at the place where ``rule`` is tried."""
         names: set[str] = set()
         for alternative in rule.alternatives:
             for entry in alternative.items:
@@ -280,7 +280,7 @@ class Analysis:
         return names
 
     def plain_starts(self, name: str) -> tuple[frozenset[int], frozenset[int]]:
-        """The first tokens with which every step from ``name`` to the bottom can only be its operand.
+        """Return the first tokens with which every step from ``name`` to the bottom can only be its operand.
 
         The second set holds tokens after the first one that exclude it: `name :=` is no expression.
         """
@@ -297,17 +297,17 @@ class Analysis:
         return kinds, seconds
 
     def continuations(self, name: str) -> frozenset[int]:
-        """The tokens that can continue an expression after an operand of the step ``name`` itself."""
+        """Return the tokens that can continue an expression after an operand of the step ``name`` itself."""
         return frozenset().union(*(self.first_of(tail.items) for tail in self.steps[name].tails))
 
     def all_continuations(self, name: str) -> frozenset[int]:
-        """The tokens that continue after the bottom's operand, in the step ``name`` or a step below it."""
+        """Return the tokens that continue after the bottom's operand, in the step ``name`` or a step below it."""
         return frozenset().union(*(self.continuations(each) for each in self.ladder(name)[:-1]))
 
     # Choices that have to be tried, and what must be memoised for them.
 
     def leading(self, items: Sequence[Named]) -> tuple[frozenset[int], frozenset[int] | None]:
-        """The first tokens of a row of items, and the second ones if the first item is one token."""
+        """Return the first tokens of a row of items, and the second ones if the first item is one token."""
         first = self.first_of(items)
         rest = [named for named in items if not isinstance(named.item, Look | Cut)]
         if rest and isinstance(rest[0].item, Token | TokenChoice) and not self.is_nullable(rest[1:]):
@@ -315,7 +315,7 @@ class Analysis:
         return first, None
 
     def overlap(self, left: Sequence[Named], right: Sequence[Named]) -> frozenset[int]:
-        """The first tokens for which both rows of items have to be tried."""
+        """Return the first tokens for which both rows of items have to be tried."""
         left_first, left_second = self.leading(left)
         right_first, right_second = self.leading(right)
         if left_second is not None and right_second is not None and not left_second & right_second:
@@ -407,7 +407,7 @@ class Analysis:
         return False
 
     def reachable(self) -> set[str]:
-        """The rules that the start rule needs."""
+        """Return the rules that the start rule needs."""
         names: set[str] = set()
         roots = [self.grammar.start]
         while roots:

@@ -95,7 +95,7 @@ def _starts_with(alternative: Alternative, rule: str) -> bool:
 
 
 def value_item(alternative: Alternative, rule: str) -> Named:
-    """The item whose value is that of an alternative without an action."""
+    """Return the item whose value is that of an alternative without an action."""
     items_with_names = [each for each in alternative.items if each.name is not None]
     bearing = [each for each in alternative.items if not isinstance(each.item, Look | Cut)]
     candidates = items_with_names or bearing
@@ -108,12 +108,12 @@ def value_item(alternative: Alternative, rule: str) -> Named:
 
 
 def describe(alternative: Alternative) -> str:
-    """An alternative as it is written in the grammar, about."""
+    """Write an alternative about as the grammar has it."""
     return "`" + " ".join(describe_item(named.item) for named in alternative.items) + "`"
 
 
 def describe_item(item: Item) -> str:
-    """An item as it is written in the grammar, about."""
+    """Write an item about as the grammar has it."""
     match item:
         case Token():
             return str(item)

@@ -105,7 +105,7 @@ class ChoiceWriter(ItemWriter):
         )
 
     def needed_ahead(self, group: list[Branch]) -> int | None:
-        """The keyword that has to follow an expression, at the same depth of brackets, for ``group`` to match.
+        """Return the keyword that has to follow an expression, at the same depth of brackets, for ``group`` to match.
 
         Whether it does can be looked up; that saves parsing the expression in vain.
         """
@@ -157,7 +157,7 @@ class ChoiceWriter(ItemWriter):
             self.reset(mark)
 
     def variable_of(self, group: list[Branch]) -> str | None:
-        """The variable for the value of the next item of ``group``, if any of its branches uses it."""
+        """Return the variable for the value of the next item of ``group``, if any of its branches uses it."""
         for branch in group:
             if self.next_of(branch).name is not None:
                 return f"v_{self.next_of(branch).name}"

@@ -27,7 +27,7 @@ __all__ = ["emit_context_free"]
 
 
 def emit_context_free(grammar_path: Path, header: str) -> str:
-    """The text of the module ``context_free``; raises `GrammarError` if a rule is missing, or none uses it."""
+    """Write the text of the module ``context_free``; raises `GrammarError` if a rule is missing, or none uses it."""
     demands = grammar_path.with_name("demands.gram")
     additions = demands.read_text(encoding="utf-8") if demands.is_file() else ""
     grammar = _with_alternatives(

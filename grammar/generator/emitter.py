@@ -17,7 +17,7 @@ class Emitter(RuleWriter):
     """Emits one of the parsers as a module."""
 
     def emit(self, header: str) -> str:
-        """The text of the module."""
+        """Write the text of the module."""
         self.depth = 1
         # Upper rules first, so that tables of operators are made for whole ladders and shared by their parts.
         for rule in sorted(

@@ -127,7 +127,7 @@ class Vocabulary:
     soft_keywords: Mapping[str, int]
 
     def kind(self, token: Token) -> int:
-        """The kind of a token."""
+        """Return the kind of a token."""
         if not token.literal:
             return KINDS[token.text]
         table = self.soft_keywords if token.soft else {**self.hard_keywords, **self.operators}

@@ -113,7 +113,7 @@ class RuleWriter(ChoiceWriter):
                 self.line(f"return v_{variable}")
 
     def left_recursive(self, rule: Rule) -> None:
-        """A left-recursive rule that is not a step of a ladder."""
+        """Write a left-recursive rule that is not a step of a ladder."""
         bases, tails, variable = [], [], ""
         for alternative in rule.alternatives:
             if alternative.items[0].item == Reference(rule.name):
@@ -173,7 +173,7 @@ class RuleWriter(ChoiceWriter):
             self.line("return r")
 
     def table_for(self, name: str) -> tuple[int, int]:
-        """The table of operators that serves the ladder from ``name`` down, and the last level to use of it."""
+        """Return the table of operators that serves the ladder from ``name`` down, and the last level to use of it."""
         ladder = self.analysis.ladder(name)
         table: dict[int, list[tuple[int, str]]] = {}
         limit = 0

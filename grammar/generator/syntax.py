@@ -29,7 +29,7 @@ Row: TypeAlias = tuple[object, ...]
 
 
 def emit_syntax(analysis: Analysis, header: str) -> str:
-    """The text of the module ``syntax``."""
+    """Write the text of the module ``syntax``."""
     grammar = analysis.grammar
     lines = [
         header.rstrip(),
@@ -58,12 +58,12 @@ def emit_syntax(analysis: Analysis, header: str) -> str:
 
 
 def rows_of(grammar: Grammar, rule: Rule) -> Iterator[tuple[Row, ...]]:
-    """The alternatives of a rule as rows of items."""
+    """Yield the alternatives of a rule as rows of items."""
     return (tuple(_row(grammar, each)) for each in rule.alternatives if each.items)
 
 
 def nodes_made(alternative: Alternative) -> Iterator[str]:
-    """The classes of nodes that the action of an alternative names, the outermost first."""
+    """Yield the classes of nodes that the action of an alternative names, the outermost first."""
     if alternative.action is not None:
         known = node_classes()
         for node in ast.walk(ast.parse(alternative.action.strip(), mode="eval")):

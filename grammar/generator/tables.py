@@ -6,7 +6,7 @@ from grammar.generator.precedence import Content, Form, Part, Precedence, Slot
 
 
 def emit_tables(analysis: Analysis, header: str) -> str:
-    """The text of the module ``tables``."""
+    """Write the text of the module ``tables``."""
     vocabulary = analysis.grammar.vocabulary
     starting_words = sorted(_starting_words(analysis))
     operators = sorted(

@@ -55,7 +55,7 @@ class Writer:
         self.line(f"p = {mark}")
 
     def kinds(self, kinds: frozenset[int], what: str, *, negated: bool = False) -> str:
-        """The code that tests whether the kind ``what`` is one of ``kinds``."""
+        """Write the code that tests whether the kind ``what`` is one of ``kinds``."""
         if len(kinds) == 1:
             return f"{what} {'!=' if negated else '=='} {next(iter(kinds))}"
         if kinds == self.all_soft:
