@@ -152,6 +152,8 @@ class NetworkElement(Frozen, Surface):
     def headings_at(self, places: Floats) -> Floats:
         """Headings ``(n,)``, anticlockwise from north, at places ``(n, 2)``."""
         guides = self._guides()
+        if len(guides) == 1:
+            return guides[0].along(places)
         chosen = self._guide_at(places)
         headings = np.empty(len(places))
         for number in np.unique(chosen):
@@ -162,11 +164,8 @@ class NetworkElement(Frozen, Surface):
     def _guide_at(self, places: Floats) -> NDArray[np.intp]:
         """Return the guide ``(n,)`` that holds each place ``(n, 2)``, the first one if several do; else the nearest."""
         guides = self._guides()
-        guide_numbers = np.full(len(places), -1, dtype=np.intp)
+        guide_numbers = np.full(len(places), 0 if len(guides) == 1 else -1, dtype=np.intp)
         for number, guide in enumerate(guides):
-            if len(guides) == 1:
-                guide_numbers[:] = 0
-                break
             free = guide_numbers < 0
             if not free.any():
                 break

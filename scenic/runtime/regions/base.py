@@ -47,6 +47,7 @@ from scenic.runtime.values.generic import call_later, sample_of
 from scenic.runtime.values.lazy import defer, is_lazy
 from scenic.runtime.values.source_text import plain_number
 from scenic.runtime.values.values import (
+    Orientation,
     OrientedVector,
     Vector,
     apply,
@@ -281,7 +282,11 @@ class Region(metaclass=_RegionType):
 
     def own_orientation(self, point: Any) -> Any:
         """Return the orientation that the region itself gives one of its points (`orientations`)."""
-        return apply(_ORIENTATION, to_vector(point), *self.parameters, payload=self)
+        place = to_vector(point)
+        if type(place) is Vector and not self.parameters:
+            with np.errstate(all="ignore"):
+                return Orientation.of(self.orientations(np.array([place.row]))[0].tolist())
+        return apply(_ORIENTATION, place, *self.parameters, payload=self)
 
     def orientation_asked(self, point: Any) -> Any:
         """`own_orientation` for any point, called by programs."""
