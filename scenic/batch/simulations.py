@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from scenic.simulators.simulator import Simulator
 
 __all__ = [
-    "SimulationError",
+    "FailedSimulationError",
     "SimulationRow",
     "SimulationSettings",
     "Simulations",
@@ -98,7 +98,7 @@ class SimulationRow:
     exhausted: "Exhausted | None" = None
 
 
-class SimulationError(RuntimeError):
+class FailedSimulationError(RuntimeError):
     """A simulation that failed; ``row`` identifies it, and its ``error`` has the reason."""
 
     def __init__(self, row: SimulationRow) -> None:
@@ -398,7 +398,7 @@ def simulated(
 
     Raises:
         ValueError: for a number or time that is not allowed.
-        SimulationError: if the program or the simulator fails in one of them.
+        FailedSimulationError: if the program or the simulator fails in one of them.
         SimulatorChoiceError: if there is no such simulator.
         SimulationFolderError: if the folder holds other simulations, or some that are not to be gone on with.
 
@@ -428,7 +428,7 @@ def simulated(
         with closing(batch.rows([k for k in numbers if k not in row_of], engine)) as rows:
             for row in rows:
                 if row.error is not None:
-                    raise SimulationError(row)
+                    raise FailedSimulationError(row)
                 row_of[row.k] = row
     return [row_of[k] for k in numbers]
 

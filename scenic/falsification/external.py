@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from scenic.falsification.samplers import RESTORABLE, SEQUENCES, make_sampler
-from scenic.falsification.samplers.sampler import NoMorePointsError, Sampler
+from scenic.falsification.samplers.search_sampler import NoMorePointsError, SearchSampler
 from scenic.falsification.space import Coordinate, Floats, Space, space_of
 from scenic.language.errors import InvalidScenarioError, ScenicWarning
 from scenic.runtime.python.random_state import preserved
@@ -81,7 +81,7 @@ class VerifaiSampler(ExternalSampler):
         super().__init__(params, globalParams)
         seed = random.getrandbits(63)
         with preserved():  # libraries draw while they are imported
-            self.sampler: Sampler = make_sampler(
+            self.sampler: SearchSampler = make_sampler(
                 str(self.globalParams.get("verifaiSamplerType", "halton")),
                 Space(self.params),
                 seed,
@@ -186,7 +186,7 @@ class _Supposed:
     def __init__(self, sampler: VerifaiSampler) -> None:
         self.sampler = sampler
         self._space = Space(sampler.params)
-        self._before: Sampler = sampler.sampler
+        self._before: SearchSampler = sampler.sampler
         self._points = np.zeros((0, len(self._space)))
 
     def ahead(self, feedback: object, count: int) -> dict[int, Floats]:

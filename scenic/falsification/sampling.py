@@ -7,7 +7,7 @@ import numpy as np
 
 from scenic.falsification.objectives import Objective
 from scenic.falsification.samplers import make_sampler
-from scenic.falsification.samplers.sampler import NoMorePointsError as NoMorePoints
+from scenic.falsification.samplers.search_sampler import NoMorePointsError as NoMorePoints
 from scenic.falsification.space import decides, space_of
 from scenic.language.errors import InvalidScenarioError
 from scenic.runtime.sampling.rejection_report import Exhausted

@@ -18,7 +18,7 @@ from scenic.dataclass import dataclass
 from scenic.falsification.evaluating import Evaluation, Failures, RunTask, SearchError, evaluated
 from scenic.falsification.objectives import Objective
 from scenic.falsification.samplers import make_sampler
-from scenic.falsification.samplers.sampler import NoMorePointsError
+from scenic.falsification.samplers.search_sampler import NoMorePointsError
 from scenic.falsification.search_folder import SearchFolder
 from scenic.falsification.space import Floats, Space, space_of, worded
 from scenic.language.errors import InvalidScenarioError

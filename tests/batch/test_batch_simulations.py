@@ -4,7 +4,7 @@ import pytest
 
 import scenic
 from scenic.batch.engines import Processes
-from scenic.batch.simulations import SimulationError, SimulationRow, Simulations, SimulationSettings
+from scenic.batch.simulations import FailedSimulationError, SimulationRow, Simulations, SimulationSettings
 
 PROGRAM = """
 behavior Drive():
@@ -43,7 +43,7 @@ def test_a_failing_simulation_is_raised_with_its_diagnostic() -> None:
     scenario = scenic.scenarioFromString(
         "behavior B():\n    take 1 / 0\nego = new Object with behavior B\n", filename="failing.scenic"
     )
-    with pytest.raises(SimulationError, match="simulation 0 failed") as caught:
+    with pytest.raises(FailedSimulationError, match="simulation 0 failed") as caught:
         scenario.simulate(1, seed=1)
     found = caught.value.row.error
     assert found is not None

@@ -15,7 +15,7 @@ from scipy.stats import qmc
 import scenic
 from scenic.falsification.samplers import SAMPLERS, make_sampler
 from scenic.falsification.samplers.buckets import Bandit, CrossEntropy, EpsilonGreedy
-from scenic.falsification.samplers.sampler import NoMorePointsError, SamplerError
+from scenic.falsification.samplers.search_sampler import NoMorePointsError, SamplerError
 from scenic.falsification.space import Coordinate, Space, space_of
 
 SPACE = Space((Coordinate(1, "x"), Coordinate(2, "d", 1, 4, 4), Coordinate(3, "y", shares=(0.5, 0.0, 0.5))))

@@ -9,14 +9,14 @@ from scenic.falsification.samplers.bayesian import Bayesian
 from scenic.falsification.samplers.buckets import Bandit, CrossEntropy, EpsilonGreedy
 from scenic.falsification.samplers.evolution import Evolution
 from scenic.falsification.samplers.parzen import Parzen
-from scenic.falsification.samplers.sampler import Sampler, SamplerError
+from scenic.falsification.samplers.search_sampler import SamplerError, SearchSampler
 from scenic.falsification.samplers.space_filling import Grid, Halton, RandomSampler, SobolSampler
 from scenic.falsification.space import Space
 from scenic.language.spelling import nearest_option
 
 __all__ = ["RESTORABLE", "SAMPLERS", "SEQUENCES", "make_sampler"]
 
-SAMPLERS: Final[Mapping[str, Callable[[Space, int, Any], Sampler]]] = MappingProxyType(
+SAMPLERS: Final[Mapping[str, Callable[[Space, int, Any], SearchSampler]]] = MappingProxyType(
     {
         "random": RandomSampler,
         "halton": Halton,
@@ -40,7 +40,7 @@ RESTORABLE: Final = (CrossEntropy, Bandit, EpsilonGreedy, Annealing)
 """Samplers that learn, and can be set back: a copy goes on as they do."""
 
 
-def make_sampler(name: str, space: Space, seed: int, given: object = None) -> Sampler:
+def make_sampler(name: str, space: Space, seed: int, given: object = None) -> SearchSampler:
     """The sampler of a name; raises `SamplerError` if there is none, or its library is missing."""
     if name not in SAMPLERS:
         near = nearest_option(name, SAMPLERS)

@@ -5,7 +5,7 @@ from typing import Final
 
 import numpy as np
 
-from scenic.falsification.samplers.sampler import options
+from scenic.falsification.samplers.search_sampler import options
 from scenic.falsification.space import Floats, Space
 
 __all__ = ["Annealing"]

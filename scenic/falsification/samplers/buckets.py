@@ -7,7 +7,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from scenic.falsification.samplers.sampler import SamplerError, options
+from scenic.falsification.samplers.search_sampler import SamplerError, options
 from scenic.falsification.space import Floats, Space, shares_of
 
 __all__ = ["Bandit", "CrossEntropy", "EpsilonGreedy"]

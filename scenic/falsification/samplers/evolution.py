@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from scenic.falsification.samplers.sampler import SamplerError, options
+from scenic.falsification.samplers.search_sampler import SamplerError, options
 from scenic.falsification.space import Floats, Space
 from scenic.language.extras import needing
 from scenic.runtime.python.random_state import preserved, seed_globals

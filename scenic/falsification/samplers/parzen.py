@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from scenic.falsification.samplers.sampler import SamplerError, options
+from scenic.falsification.samplers.search_sampler import SamplerError, options
 from scenic.falsification.space import Floats, Space
 from scenic.language.extras import needing
 

@@ -6,7 +6,7 @@ from typing import Any, Protocol
 from scenic.falsification.space import Floats
 from scenic.language.errors import InvalidScenarioError, Located
 
-__all__ = ["NoMorePointsError", "Sampler", "SamplerError", "options"]
+__all__ = ["NoMorePointsError", "SamplerError", "SearchSampler", "options"]
 
 
 class SamplerError(Located):
@@ -19,7 +19,7 @@ class NoMorePointsError(InvalidScenarioError):
     """A sampler has no more points."""
 
 
-class Sampler(Protocol):
+class SearchSampler(Protocol):
     """Chooses the points of a search."""
 
     @property
