@@ -27,7 +27,7 @@ _LONG: Final = 24.0
 """Metres from which a lane is long enough for a path to be cut in its middle."""
 _ABOUT: Final = 12.0
 """Metres along a path within which a place is looked for that is known roughly."""
-_WORTH: Final = 0.1
+_WORTH: Final = 0.05
 """Seconds of smoothing from which on its results are kept."""
 _SHARE: Final = 10
 """Times that keeping pieces takes which are spent on others before all are kept again."""
@@ -118,18 +118,18 @@ class PathPieces:
     def _known(self, key: PieceKey, make: Callable[[], PathPiece]) -> PathPiece:
         piece = self._pieces.get(key)
         if piece is None:
-            begun = time.perf_counter()
+            begun = time.process_time()
             piece = self._pieces[key] = make()
-            self._spent += time.perf_counter() - begun
+            self._spent += time.process_time() - begun
             if self._content is not None and self._spent > self._worth:
                 self._keep(self._content)
         return piece
 
     def _keep(self, content: bytes) -> None:
         """Keep all pieces, and wait with the next time until that takes but a part of what it may save."""
-        begun = time.perf_counter()
+        begun = time.process_time()
         keep_pieces(content, self._pieces)
-        self._spent, self._worth = 0.0, max(_WORTH, _SHARE * (time.perf_counter() - begun))
+        self._spent, self._worth = 0.0, max(_WORTH, _SHARE * (time.process_time() - begun))
 
     def _half(self, lane: Lane, *, first: bool) -> PathPiece:
         _, curve = self._curve(lane)
