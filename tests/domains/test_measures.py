@@ -56,6 +56,25 @@ record distance_to_lane_border(ego) as border
     assert records(done, "border")[0] == pytest.approx(0.75)
 
 
+def test_cars_in_contact_have_no_time_left(tmp_path: Path) -> None:
+    """A turned car that comes from beside: its corner is beside the other's, then ahead by less, then in it."""
+    text = """
+ego = new Car at (50, -1.75), facing -90 deg, with velocity (10, 0), with allowCollisions True
+beside = new Car at (53, 1.2), facing -80 deg, with velocity (10, 0), with allowCollisions True
+touching = new Car at (49.5, 0), facing -90 deg, with velocity (12, 0), with allowCollisions True
+record time_to_collision(ego, beside) as beside
+record bumper_gap(ego, beside) as gap
+record time_to_collision(ego, touching) as touching
+"""
+    done = simulated(tmp_path, text, straight(400), 0)
+    ego, beside, _ = (shapely.Polygon([(x, y) for x, y, *_ in item.corners[:4]]) for item in done.objects)
+    (gap,) = records(done, "gap")
+    assert gap in (math.inf, pytest.approx(ego.distance(beside)))
+    assert gap > 0
+    assert records(done, "beside") == [math.inf]
+    assert records(done, "touching") == [0.0]
+
+
 @pytest.mark.parametrize(("y", "border"), [(-1.75, 0.75), (-1.25, 0.25), (-0.75, -0.25), (-3.0, -0.5)])
 def test_distances_to_lane_borders(tmp_path: Path, y: float, border: float) -> None:
     text = (

@@ -30,17 +30,39 @@ def _extent(thing: Any, dx: float, dy: float) -> float:
     return float(thing.length * ahead + thing.width * aside) / 2
 
 
+def _corners(thing: Any) -> list[tuple[float, float]]:
+    """Return the corners of an object's outline."""
+    sine, cosine = math.sin(thing.heading), math.cos(thing.heading)
+    x, y, *_ = thing.position
+    a, b = thing.width / 2, thing.length / 2
+    return [
+        (x + u * cosine - v * sine, y + u * sine + v * cosine)
+        for u, v in ((-a, -b), (a, -b), (a, b), (-a, b))
+    ]
+
+
+def _distance(one: Any, other: Any) -> float:
+    """Return the distance of two outlines, 0 where they touch; infinite if one object is above the other."""
+    import shapely
+
+    (x, y, z), (u, v, w) = one.position, other.position
+    reach = math.hypot(one.width, one.length) / 2 + math.hypot(other.width, other.length) / 2
+    if math.hypot(x - u, y - v) > reach or abs(z - w) > (one.height + other.height) / 2:
+        return math.inf
+    return float(shapely.Polygon(_corners(one)).distance(shapely.Polygon(_corners(other))))
+
+
 def bumper_gap(car: object, other: object) -> float:
     """Return the distance from the front of a car to the rear of another object in its way, along its lane; infinite if it is not ahead.
 
-    The way is the lane of the car and the lanes straight after it; beside the way, by more than half of both widths, nobody is ahead.
+    It is 0 while they touch. Where the outlines overlap along the lane, but do not touch, it is their distance. The way is the lane of the car and the lanes straight after it; beside the way, by more than half of both widths, nobody is ahead.
     """
     found = _along_lane(car, other)
     return math.inf if found is None else found[0]
 
 
 def _along_lane(car: Any, other: Any) -> tuple[float, float, float] | None:
-    """Return the gap to an object ahead, and the speeds of both along the lane; ``None`` if it is not ahead in the way."""
+    """Return the gap to an object ahead or in contact, and the speeds of both along the lane; ``None`` if it is not ahead in the way."""
     import shapely
 
     lane = car._lane
@@ -65,20 +87,22 @@ def _along_lane(car: Any, other: Any) -> tuple[float, float, float] | None:
         headings.append(((x1 - x0) / length, (y1 - y0) / length))
     (dx, dy), (ex, ey) = headings
     aside = abs(spots[1].distance(line))
-    if place <= own_place or aside > (_extent(other, -ey, ex) + _extent(car, -dy, dx)):
-        return None
-    if not all(lane.network.is_level(item, other.position) for item in lanes):
-        return None  # on a bridge, or below one
     gap = place - own_place - _extent(car, dx, dy) - _extent(other, ex, ey)
+    distance = _distance(car, other) if gap <= 0 else gap
+    if distance:
+        if place <= own_place or aside > (_extent(other, -ey, ex) + _extent(car, -dy, dx)):
+            return None
+        if not all(lane.network.is_level(item, other.position) for item in lanes):
+            return None  # on a bridge, or below one
     speeds = (
         car.velocity[0] * dx + car.velocity[1] * dy,
         other.velocity[0] * ex + other.velocity[1] * ey,
     )
-    return max(gap, 0.0), float(speeds[0]), float(speeds[1])
+    return distance, float(speeds[0]), float(speeds[1])
 
 
 def time_to_collision(car: object, other: object) -> float:
-    """The time until a car runs into an object ahead if both keep their speeds: gap / (v - v_other).
+    """The time until a car runs into an object ahead if both keep their speeds: gap / (v - v_other); 0 while they touch.
 
     J. C. Hayward, Near-miss determination through use of a scale of danger, Highway Research Record 384, 1972.
     """
@@ -86,7 +110,7 @@ def time_to_collision(car: object, other: object) -> float:
     if found is None:
         return math.inf
     gap, own, ahead = found
-    return gap / (own - ahead) if own - ahead > 1e-9 else math.inf
+    return gap / (own - ahead) if own - ahead > 1e-9 else math.inf if gap else 0.0
 
 
 def time_headway(car: object, other: object) -> float:
@@ -120,13 +144,7 @@ def distance_to_lane_border(car: Any) -> float:
     if lane is None:
         return -math.inf
     sides = [shapely.LineString(side) for side in (lane.left, lane.right)]
-    sine, cosine = math.sin(car.heading), math.cos(car.heading)
-    x, y, *_ = car.position
-    a, b = car.width / 2, car.length / 2
-    corners = [
-        (x + u * cosine - v * sine, y + u * sine + v * cosine)
-        for u, v in ((-a, -b), (a, -b), (a, b), (-a, b))
-    ]
+    corners = _corners(car)
     outline = shapely.Polygon(corners)
     if all(not outline.intersects(side) for side in sides):
         return float(min(outline.distance(side) for side in sides))
