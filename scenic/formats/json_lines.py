@@ -185,6 +185,17 @@ def real(value: Any) -> float:
     return float(value["$float"]) if isinstance(value, dict) else float(value)
 
 
+def decoded(value: Any) -> Any:
+    """Return a saved value with its numbers that JSON has no word for."""
+    if isinstance(value, list):
+        return [decoded(item) for item in value]
+    if isinstance(value, dict):
+        return (
+            real(value) if value.keys() == {"$float"} else {key: decoded(item) for key, item in value.items()}
+        )
+    return value
+
+
 def plain(value: object, numbers: Mapping[int, int], within: tuple[int, ...] = ()) -> Any:
     """Return a value as JSON holds it; ``numbers`` maps the ``id`` of each object of the scene to its index.
 

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from scenic.dataclass import dataclass
-from scenic.formats.json_lines import real
+from scenic.formats.json_lines import decoded, real
 from scenic.formats.trajectories import FORMAT, VERSION
 from scenic.formats.trajectory_tables import parquet_about, parquet_steps
 from scenic.language.errors import Located, MissingFileError
@@ -71,11 +71,11 @@ class TrajectoryArrays:
 
     def record(self, name: str) -> Any:
         """Return the values that a ``record`` statement saved: of a series, which is kept as pairs of step and value, the values alone."""
-        found = self.about["records"][name]
-        is_series = isinstance(found, list) and all(
-            isinstance(item, list) and len(item) == 2 for item in found
+        saved = self.about["records"][name]
+        is_series = isinstance(saved, list) and all(
+            isinstance(item, list) and len(item) == 2 for item in saved
         )
-        return [value for _, value in found] if is_series else found
+        return decoded([value for _, value in saved] if is_series else saved)
 
 
 def read_trajectory(path: str | Path) -> TrajectoryArrays:

@@ -165,6 +165,7 @@ def test_tables_of_something_else_are_refused(tmp_path: Path) -> None:
 def test_numbers_that_are_not_finite(tmp_path: Path) -> None:
     about: dict[str, Any] = {"format": "scenic-simulation", "version": 1, "steps": 0, "timestep": 1.0}
     about["objects"] = [{"name": None}]
+    about["records"] = {"ttc": [[0, {"$float": "inf"}], [1, 2.5]]}
     state = {"step": 0, "time": 0.0, "actions": {}, "orientations": [[0, 0, 0, 1]]}
     state["positions"] = [[{"$float": "inf"}, {"$float": "nan"}, -1.5]]
     write(ParquetFile(tmp_path / "a.parquet"), about, [state])
@@ -173,6 +174,7 @@ def test_numbers_that_are_not_finite(tmp_path: Path) -> None:
         np.testing.assert_array_equal(
             scenic.read_trajectory(tmp_path / name).positions, [[[math.inf, math.nan, -1.5]]]
         )
+        assert scenic.read_trajectory(tmp_path / name).record("ttc") == [math.inf, 2.5]
 
 
 @pytest.mark.parametrize("text", ["", "{}", '{"format": "scenic-scene", "version": 1}', "PAR1", "no"])
