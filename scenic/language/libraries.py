@@ -4,7 +4,15 @@ from typing import Final
 
 from scenic.language.word_sets import word_set
 
-__all__ = ["DRIVING_CLASSES", "DRIVING_NAMES", "FAMILIES", "LIBRARIES", "NEEDS_MAP", "how_to_get"]
+__all__ = [
+    "DRIVING_CLASSES",
+    "DRIVING_NAMES",
+    "FAMILIES",
+    "LIBRARIES",
+    "NEEDS_MAP",
+    "ROAD_RULES",
+    "how_to_get",
+]
 
 FAMILIES: Final = frozenset(
     {"scenic.contracts", "scenic.core", "scenic.formats", "scenic.gym", "scenic.syntax"}
@@ -63,6 +71,9 @@ DRIVING_NAMES: Final = DRIVING_CLASSES | {
     "withinDistanceToObjsInLane",
 }
 """Names of the driving domain that programs use most."""
+
+ROAD_RULES: Final = ("speed_limits", "signals", "signs", "priority", "pedestrians", "gaps")
+"""Names of the rules of the road that `DriveByRulesBehavior` can be told to ignore."""
 
 NEEDS_MAP: Final = word_set(
     "scenic.domains.driving.model scenic.simulators.carla.model scenic.simulators.lgsvl.model "

@@ -11,6 +11,7 @@ from scenic.compiler.places import word_span
 from scenic.compiler.scopes import Scope, ScopeKind
 from scenic.compiler.semantics.symbols import Symbol, symbol_of_binding
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Label
+from scenic.language.libraries import ROAD_RULES
 from scenic.language.names import NAMES
 from scenic.language.spans import Span
 from scenic.language.spelling import nearest, related
@@ -69,6 +70,25 @@ def _call(node: ast.Call, _scope: Scope, context: CheckContext) -> Iterator[Diag
         )
     elif callee is not None:
         yield from _arguments(node, callee, context)
+        if callee.name == "DriveByRulesBehavior" and not callee.is_here(context):
+            yield from _ignored_rules(node, context)
+
+
+def _ignored_rules(node: ast.Call, context: CheckContext) -> Iterator[Diagnostic]:
+    """SC401: ``DriveByRulesBehavior(ignore={'signal'})``, where there is no such rule."""
+    for keyword in node.keywords:
+        if keyword.arg != "ignore":
+            continue
+        value = keyword.value
+        for item in value.elts if isinstance(value, ast.Set | ast.List | ast.Tuple) else [value]:
+            if (
+                isinstance(item, ast.Constant)
+                and isinstance(item.value, str)
+                and item.value not in ROAD_RULES
+            ):
+                near = nearest(item.value, list(ROAD_RULES))
+                hint = f"did you mean {near!r}?" if near else f"the rules are {', '.join(ROAD_RULES)}"
+                yield context.error("SC401", f"there is no rule {item.value!r} to ignore", item, hint)
 
 
 class _Callee(NamedTuple):

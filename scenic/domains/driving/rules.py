@@ -19,12 +19,11 @@ from scenic.domains.driving.speed_limits import limits_along
 from scenic.domains.driving.speed_profiles import Comfort
 from scenic.domains.driving.trajectories import LaneRoute
 from scenic.domains.driving.wrong_arguments import impossible_argument, wrong_argument
+from scenic.language.libraries import ROAD_RULES
 from scenic.language.spelling import nearest
 
-__all__ = ["RULES", "RulesDriver"]
+__all__ = ["RulesDriver"]
 
-RULES: Final = ("speed_limits", "signals", "signs", "priority", "pedestrians", "gaps")
-"""Names of rules that a driver can be told to ignore."""
 _UNLIMITED: Final = 13.9
 """Speed (m/s) where a map has no limit: 50 km/h."""
 _FASTEST: Final = 40.0
@@ -76,7 +75,7 @@ class RulesDriver(LaneDriver):
     Args:
         agent: the car.
         target: speed to reach, m/s; ``None`` for what limits allow.
-        ignore: names of `RULES` that the driver does not obey.
+        ignore: names of `ROAD_RULES` that the driver does not obey.
         comfort: limits of accelerations.
         gap: kept behind others.
         route: lanes to take; after the last one, and without it, ways are chosen.
@@ -100,9 +99,9 @@ class RulesDriver(LaneDriver):
             raise wrong_argument("ignore", "names of rules in a set", ignore)
         self._ignored = frozenset([ignore] if isinstance(ignore, str) else ignore)
         for name in sorted(map(str, self._ignored)):
-            if name not in RULES:
-                near = nearest(name, list(RULES))
-                hint = f"did you mean {near!r}?" if near else f"the rules are {', '.join(RULES)}"
+            if name not in ROAD_RULES:
+                near = nearest(name, list(ROAD_RULES))
+                hint = f"did you mean {near!r}?" if near else f"the rules are {', '.join(ROAD_RULES)}"
                 raise impossible_argument("ignore", f"there is no rule {name!r} to ignore", hint)
         self._halts: list[_Halt] = []
         self._marks = 0

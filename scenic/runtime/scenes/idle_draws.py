@@ -1,6 +1,8 @@
 """Draws on which nothing depends: colours that nobody looks at, and defaults of behaviors that nobody runs."""
 
+import re
 from collections.abc import Iterator
+from typing import Final
 
 from scenic.graph.node import Graph, Node
 from scenic.runtime.description.definitions import Definition, Invocable
@@ -14,15 +16,20 @@ __all__ = ["defaults", "idle_draws"]
 _LOOKS = "color"
 """The property that decides what an object looks like, and nothing else."""
 
+_READING: Final = re.compile(rf"\.\s*{_LOOKS}\b|['\"]{_LOOKS}['\"]")
+"""A look at that property in the text of a program."""
 
-def idle_draws(program: Program, graph: Graph) -> frozenset[int]:
+
+def idle_draws(program: Program, graph: Graph, text: str) -> frozenset[int]:
     """Return the addresses of the draws on which neither requirements nor simulations depend.
 
-    Colours count where code of the program names colours, or an object has sensors, which may see them.
+    Colours count where the program or code of it looks at colours, or an object has sensors, which may see them. A requirement that
+    calls a function with an object depends on all of the object, but looks at no colour unless the program does.
 
     Args:
         program: a program that has run.
         graph: what its scenes need.
+        text: of the program.
 
     """
     properties = [item.properties for item in program.instances]
@@ -31,7 +38,8 @@ def idle_draws(program: Program, graph: Graph) -> frozenset[int]:
     others: list[object] = [
         value for values in properties for name, value in values.items() if name != _LOOKS
     ]
-    is_seen = mention(walk, _LOOKS) or any(values.get("sensors") for values in properties)
+    is_seen = _READING.search(text) is not None or mention(walk, _LOOKS)
+    is_seen |= any(values.get("sensors") for values in properties)
     (others if is_seen else idle).extend(values.get(_LOOKS) for values in properties)
     for invocable in program.invocables:
         is_run = mention(walk, invocable.__name__)
@@ -42,7 +50,8 @@ def idle_draws(program: Program, graph: Graph) -> frozenset[int]:
     idle_axes = Graph(list(_nodes(idle))).axes
     if not idle_axes:
         return frozenset()
-    axes_in_use = Graph([*(item.condition for item in program.requirements), *_nodes(others)]).axes
+    conditions = [item.condition for item in program.requirements] if is_seen else []
+    axes_in_use = Graph([*conditions, *_nodes(others)]).axes
     return frozenset(
         graph.address(axis) for axis in idle_axes if axis in graph.index and axis not in axes_in_use
     )

@@ -199,7 +199,7 @@ class Scenario(Generating):
         from scenic.runtime.scenes.idle_draws import idle_draws
 
         if self._idle_draws is None:
-            self._idle_draws = idle_draws(self._program, self.outline.graph)
+            self._idle_draws = idle_draws(self._program, self.outline.graph, self.text)
         return self._idle_draws
 
     def line_of(self, span: Span | None, thing: str) -> int | None:

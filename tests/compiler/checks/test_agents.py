@@ -82,5 +82,14 @@ def test_vehicles_of_the_general_model_can_drive(tmp_path: Path) -> None:
     assert len(found(tmp_path, "new Pedestrian with behavior Push()", head)) == 1
 
 
+def test_rules_that_are_not_there_are_named(tmp_path: Path) -> None:
+    program = HEAD + "new Car with behavior DriveByRulesBehavior(ignore={'speedlimit', 'signals'})\n"
+    program += "new Car with behavior DriveByRulesBehavior(ignore='signal')\n"
+    wrong = [(item.code, item.message, item.help) for item in findings(tmp_path / "drive.scenic", program)]
+    assert ("SC401", "there is no rule 'speedlimit' to ignore", "did you mean 'speed_limits'?") in wrong
+    assert ("SC401", "there is no rule 'signal' to ignore", "did you mean 'signals'?") in wrong
+    assert sum(code == "SC401" for code, _, _ in wrong) == 2
+
+
 def test_other_programs_are_left_alone(tmp_path: Path) -> None:
     assert found(tmp_path, "new Object with behavior Go()", "behavior Go():\n    take 1\n") == []

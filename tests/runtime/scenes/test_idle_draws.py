@@ -6,8 +6,11 @@ import scenic
 from scenic.falsification.space import space_of
 
 COLORED = "ego = new Object with color (Range(0, 1), 0, 0)"
+MEASURED = (
+    "from scenic.domains.driving.measures import time_headway\n"
+    "other = new Object at (5, 0)\nrequire time_headway(ego, other) > 0"
+)
 BEHAVIOR = "behavior Go():\n    x = self.{name}\n    wait\n"
-LIBRARY = "from scenic.domains.driving.behaviors import *\n"
 
 
 def idle(text: str) -> set[str]:
@@ -26,6 +29,7 @@ def idle(text: str) -> set[str]:
         f"{COLORED}, with speed Range(1, 2)\nrequire ego.speed > 1.5",
         f"{BEHAVIOR.format(name='speed')}{COLORED}, with behavior Go",
         f"{COLORED}\nother = new Object at (5, 0)\nrequire (distance to other) > 2\nrecord ego.position",
+        f"{COLORED}, with width Range(1, 2)\n{MEASURED}",
     ],
 )
 def test_colors_that_nobody_looks_at_are_idle(text: str) -> None:
@@ -37,6 +41,7 @@ def test_colors_that_nobody_looks_at_are_idle(text: str) -> None:
     [
         f"{COLORED}\nrequire ego.color[0] > 0.5",
         f"{COLORED}\nrecord ego.color",
+        f"{COLORED}\nrequire getattr(ego, 'color')[0] > 0.5",
         f"{BEHAVIOR.format(name='color')}{COLORED}, with behavior Go",
         "x = Range(0, 1)\nego = new Object with color (x, 0, 0)",
         "def make(x):\n    return new Object with color (x, 0, 0), with width 1 + x\nego = make(Range(0, 1))",
