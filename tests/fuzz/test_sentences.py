@@ -1,14 +1,11 @@
-"""The strategies: every rule has sentences, they stay small, and they shrink to short ones."""
-
-import contextlib
-import io
+"""The strategies: every rule has sentences, and they stay small."""
 
 import pytest
-from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from fuzz.derivations import AlternativeId
-from fuzz.draws import RandomDraws, replayed
+from fuzz.draws import RandomDraws
 from fuzz.grammar import Limits, Program, derivations, from_grammar, make_program, programs
 from fuzz.terminals import CLOSERS, OPENERS, Shape
 from scenic.compiler.generated import SOFT_KEYWORDS
@@ -85,40 +82,6 @@ def test_the_number_of_expansions_is_bounded():
         assert len(program.pieces) < 400
 
     check()
-
-
-def test_shrinking_ends_in_small_programs():
-    """From the numbers of a program that is always the same, as a run shrinks what it finds."""
-    made = ((draws, make_program(draws)) for draws in map(RandomDraws, range(200)))
-    choices, found = next(
-        (tuple(draws.choices), [program.text]) for draws, program in made if _has(program, "@")
-    )
-    assert len(found[0]) > 250
-
-    @settings(
-        deadline=None,
-        database=replayed(choices),
-        phases=(Phase.reuse, Phase.shrink),
-        report_multiple_bugs=False,
-        suppress_health_check=list(HealthCheck),
-    )
-    @given(programs())
-    def attempt(program: Program) -> None:
-        if _has(program, "@"):
-            found.append(program.text)
-            raise _FoundError
-
-    with contextlib.redirect_stdout(io.StringIO()), contextlib.suppress(_FoundError):
-        attempt()
-    assert len(found[-1]) <= 70, found[-1]
-
-
-class _FoundError(Exception):
-    """A program with the word."""
-
-
-def _has(program: Program, word: str) -> bool:
-    return any(piece.text == word and piece.shape is not Shape.STRING for piece in program.pieces)
 
 
 def test_a_name_may_be_a_soft_keyword():
