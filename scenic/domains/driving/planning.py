@@ -29,7 +29,7 @@ _SHARPEST: Final = 0.2
 """Curvature (1/m) of curves by which a car joins a path."""
 _SHORTEST: Final = 6.0
 """Metres that a car takes to join a path on which it stops sooner."""
-_SLOW: Final = 4.0
+_SLOW: Final = 2.5
 """Speed (m/s) at which times along a path are computed where a car is slower: it bends its way no more than this lets it."""
 
 
