@@ -51,6 +51,22 @@ def test_junctions_count_though_the_car_is_too_fast_for_a_bend_before_them() -> 
     assert accelerations[100:145].min() > -0.5
 
 
+@pytest.mark.parametrize("speed", [14.0, 16.0, 17.0, 17.6])
+def test_who_plans_anew_brakes_no_harder(speed: float) -> None:
+    allowed = limits([(120, 5.0)], width=300)
+    speeds, accelerations = speeds_along(ALONG, allowed, speed, COMFORT)
+    hardest = accelerations.min()
+    for place in range(5, 110, 7):
+        _, anew = speeds_along(
+            ALONG[place:],
+            allowed[place:],
+            float(speeds[place]),
+            COMFORT,
+            acceleration=float(accelerations[place]),
+        )
+        assert anew.min() > 1.1 * hardest - 0.1
+
+
 @settings(max_examples=60)
 @given(st.lists(st.floats(0.0, 30.0), min_size=1, max_size=80), st.integers(0, 120), st.integers(0, 120))
 def test_least_values_around_points(values: list[float], before: int, after: int) -> None:

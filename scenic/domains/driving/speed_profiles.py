@@ -31,6 +31,8 @@ _TOLERANCE: Final = 1.1
 """Times the squared speed limits up to which no car brakes at once."""
 _FEW: Final = 4
 """Points of a path on which a car that is too fast brakes hard, at least."""
+_SOON: Final = 0.65
+"""Seconds over which acceleration changes of a car that comes to what it brakes for before it would brake without any jolt."""
 _AT_ONCE: Final = 0.3
 """Seconds over which acceleration changes of a car that is too fast."""
 _CLASSES: Final = (3.0, 6.0, 12.0, 24.0, 60.0)
@@ -117,21 +119,22 @@ def speeds_along(
         junctions: stretches, from and to an index, before which braking for lower limits ends, rather than in them.
 
     """
-    window = (comfort.acceleration + comfort.deceleration) / comfort.jerk
     wanted = np.minimum(limits, wanted)
-    allowed = _allowed(along, limits, window / 2, stops=stops)
-    squares = _TOLERANCE * allowed
-    going = _going_on(speed, acceleration, window / 2, comfort.deceleration, comfort)
-    if _needed(along, squares, *going[1:]) <= _HARDER * comfort.deceleration:
-        way = _Way(along, wanted, comfort, junctions, stops)
-        return way.speeds(speed, acceleration, comfort.deceleration, window, allowed)
+    most = _HARDER * comfort.deceleration
+    for window in ((comfort.acceleration + comfort.deceleration) / comfort.jerk, _SOON):
+        squares = _allowed(along, limits, window / 2, stops=stops)
+        going = _going_on(speed, acceleration, window / 2, comfort.deceleration, comfort)
+        if _needed(along, _TOLERANCE * squares, *going[1:]) <= most:
+            way = _Way(along, wanted, comfort, junctions, stops)
+            deceleration = min(max(_needed(along, squares, *going[1:]), comfort.deceleration), most)
+            return way.speeds(speed, acceleration, deceleration, window, squares)
     # Too fast for what lies ahead: an even, harder braking that begins at once, until comfort is enough.
     allowed = _allowed(along, limits, _AT_ONCE / 2, stops=stops)
     deceleration_needed = _needed(along, allowed, speed, 0.0)
     deceleration = max(comfort.deceleration, min(1.1 * deceleration_needed, _EMERGENCY))
-    way = _Way(along, wanted, comfort, junctions, stops)
+    way = _Way(along, np.minimum(wanted, speed), comfort, junctions, stops)
     speeds, accelerations = way.speeds(speed, acceleration, deceleration, _AT_ONCE, allowed)
-    slow = speeds**2 <= _backward(squares, 2 * _HARDER * comfort.deceleration * np.diff(along))
+    slow = speeds**2 <= _backward(_TOLERANCE * squares, 2 * most * np.diff(along))
     places = np.flatnonzero(slow[_FEW:-_FEW])
     if not len(places):
         return speeds, accelerations
