@@ -120,36 +120,22 @@ def speeds_along(
 
     """
     wanted = np.minimum(limits, wanted)
-    most = _HARDER * comfort.deceleration
-    for window in ((comfort.acceleration + comfort.deceleration) / comfort.jerk, _SOON):
-        squares = _allowed(along, limits, window / 2, stops=stops)
-        going = _going_on(speed, acceleration, window / 2, comfort.deceleration, comfort)
-        if _needed(along, _TOLERANCE * squares, *going[1:]) <= most:
-            way = _Way(along, wanted, comfort, junctions, stops)
-            deceleration = min(max(_needed(along, squares, *going[1:]), comfort.deceleration), most)
-            return way.speeds(speed, acceleration, deceleration, window, squares)
-    # Too fast for what lies ahead: an even, harder braking that begins at once, until comfort is enough.
-    allowed = _allowed(along, limits, _AT_ONCE / 2, stops=stops)
-    deceleration_needed = _needed(along, allowed, speed, 0.0)
-    deceleration = max(comfort.deceleration, min(1.1 * deceleration_needed, _EMERGENCY))
-    way = _Way(along, np.minimum(wanted, speed), comfort, junctions, stops)
-    speeds, accelerations = way.speeds(speed, acceleration, deceleration, _AT_ONCE, allowed)
-    slow = speeds**2 <= _backward(_TOLERANCE * squares, 2 * most * np.diff(along))
-    places = np.flatnonzero(slow[_FEW:-_FEW])
-    if not len(places):
-        return speeds, accelerations
-    place = _FEW + int(places[0])
+    way = _Way(along, wanted, comfort, junctions, stops)
+    begun = _braked_evenly(way, limits, speed, acceleration) or _braked_hard(way, limits, speed, acceleration)
+    motion, place = begun
+    if place is None:
+        return motion
     after = speeds_along(
         along[place:],
         limits[place:],
-        float(speeds[place]),
+        float(motion[0][place]),
         comfort,
         wanted=wanted[place:],
-        acceleration=float(accelerations[place]),
+        acceleration=float(motion[1][place]),
         stops=stops,
         junctions=[(max(0, low - place), high - place) for low, high in junctions if high > place],
     )
-    return np.concatenate([speeds[:place], after[0]]), np.concatenate([accelerations[:place], after[1]])
+    return np.concatenate([motion[0][:place], after[0]]), np.concatenate([motion[1][:place], after[1]])
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,9 +149,9 @@ class _Way:
     stops: bool
 
     def speeds(
-        self, speed: float, acceleration: float, deceleration: float, window: float, allowed: Floats
+        self, speed: float, acceleration: float, decelerations: Floats, window: float, allowed: Floats
     ) -> tuple[Floats, Floats]:
-        """Return speeds and accelerations ``(n,)`` of a car that brakes by a deceleration, which changes over seconds.
+        """Return speeds and accelerations ``(n,)`` of a car that brakes by decelerations ``(n - 1,)``, which change in seconds.
 
         The squared speeds ``(n,)`` that the limits allow are those of `_allowed` for half of the window.
         """
@@ -178,8 +164,9 @@ class _Way:
         squares = _slow_before(along, squares, self.junctions, speed, window / 2, comfort.deceleration)
         squares[-1] = last
         # v(s)^2 <= v(t)^2 + 2 b (t - s) for every t ahead, and likewise for acceleration from every place behind.
-        squares = _backward(squares, 2 * deceleration * np.diff(along))
+        squares = _backward(squares, 2 * decelerations * np.diff(along))
         # Half a window long the car goes on as it does: so the average begins with its speed and acceleration.
+        deceleration = float(decelerations[0])
         acceleration, last_speed, reach = _going_on(speed, acceleration, window / 2, deceleration, comfort)
         ahead = along - along[0]
         begun = np.maximum(speed * speed + 2 * acceleration * ahead, 0.0)
@@ -190,6 +177,50 @@ class _Way:
         hardest = np.where(is_begun, begun, last_speed**2 - 2 * deceleration * (ahead - reach))
         squares = np.maximum(squares, np.maximum(hardest, 0.0))
         return _averaged(along, np.sqrt(squares), window, acceleration, stops=stops)
+
+
+def _braked_evenly(
+    way: _Way, limits: Floats, speed: float, acceleration: float
+) -> tuple[tuple[Floats, Floats], int | None] | None:
+    """The motion of a car that brakes evenly, or about so, and the index from which on it is to be planned anew.
+
+    ``None`` for a car that is too fast for that.
+    """
+    along, comfort, stops = way.along, way.comfort, way.stops
+    most = _HARDER * comfort.deceleration
+    for window in (_window(comfort), _SOON):
+        allowed = _allowed(along, limits, window / 2, stops=stops)
+        going = _going_on(speed, acceleration, window / 2, comfort.deceleration, comfort)
+        if _needed(along, _TOLERANCE * allowed, *going[1:])[0] > most:
+            continue
+        needed, place = _needed(along, allowed, *going[1:])
+        decelerations = np.full(len(along) - 1, comfort.deceleration)
+        decelerations[:place] = min(max(needed, comfort.deceleration), most)
+        motion = way.speeds(speed, acceleration, decelerations, window, allowed)
+        is_whole = window == _window(comfort) or place >= len(along) - 2 * _FEW
+        return motion, None if is_whole else place + _FEW
+    return None
+
+
+def _braked_hard(
+    way: _Way, limits: Floats, speed: float, acceleration: float
+) -> tuple[tuple[Floats, Floats], int | None]:
+    """The motion of a car that brakes evenly, hard and at once, and the index from which on comfort is enough."""
+    along, comfort, stops = way.along, way.comfort, way.stops
+    comfortable = _TOLERANCE * _allowed(along, limits, _window(comfort) / 2, stops=stops)
+    allowed = _allowed(along, limits, _AT_ONCE / 2, stops=stops)
+    needed, _ = _needed(along, allowed, speed, 0.0)
+    decelerations = np.full(len(along) - 1, max(comfort.deceleration, min(1.1 * needed, _EMERGENCY)))
+    slowing = _Way(along, np.minimum(way.wanted, speed), comfort, way.junctions, stops)
+    motion = slowing.speeds(speed, acceleration, decelerations, _AT_ONCE, allowed)
+    slow = motion[0] ** 2 <= _backward(comfortable, 2 * _HARDER * comfort.deceleration * np.diff(along))
+    places = np.flatnonzero(slow[_FEW:-_FEW])
+    return motion, _FEW + int(places[0]) if len(places) else None
+
+
+def _window(comfort: Comfort) -> float:
+    """Return the seconds over which the acceleration changes from its largest value to the deceleration."""
+    return (comfort.acceleration + comfort.deceleration) / comfort.jerk
 
 
 def _going_on(
@@ -246,11 +277,16 @@ def _backward(squares: Floats, falls: Floats) -> Floats:
     return slowest
 
 
-def _needed(along: Floats, squares: Floats, speed: float, reach: float) -> float:
-    """Return the constant deceleration by which a car meets all squared speed limits from metres ahead of it on, m/s^2."""
+def _needed(along: Floats, squares: Floats, speed: float, reach: float) -> tuple[float, int]:
+    """Return the constant deceleration by which a car meets all squared speed limits from metres ahead of it on, m/s^2.
+
+    And the index of the point for which it is needed.
+    """
     ahead = along[1:] - along[0] - reach
     # What a car meets at once it is a little too fast for at most.
-    return float(((speed * speed - squares[1:]) / (2 * np.maximum(ahead, 0.5 + 0.3 * speed))).max())
+    each = (speed * speed - squares[1:]) / (2 * np.maximum(ahead, 0.5 + 0.3 * speed))
+    place = int(each.argmax())
+    return float(each[place]), place + 1
 
 
 def _eroded(along: Floats, limits: Floats, time: float) -> Floats:
