@@ -209,7 +209,12 @@ _FILES: Final = (FileSink("report", _report, lambda page: check_page(page, "--re
 @option("--against OTHER.scenic", "Compare with another program, by the same runs (McNemar's test).")
 @course_options
 @swept_program_options
-@option("--join others DIR", "If FILE is the folder of an estimate: another one, of other numbers of the same runs. Repeatable.", click.Path(path_type=Path, exists=True, file_okay=False), multiple=True)  # fmt: skip
+@option(
+    "--join others DIR",
+    "If FILE is the folder of an estimate: another one, of other numbers of the same runs. Repeatable.",
+    click.Path(path_type=Path, exists=True, file_okay=False),
+    multiple=True,
+)
 @option("-o --output DIR", "Keep the runs in this folder.", PATH)
 @option("--report PAGE.html", "Make a page about the estimate.", PATH)
 def estimate(**options: Any) -> int:
