@@ -137,23 +137,26 @@ class Lexer(LineReader):
         add_kind, add_text = kinds.append, texts.append
         add_column, add_end_column = columns.append, end_columns.append
         kind_of, name_kind, tolerant = words.get, NAME, self.tolerant
+        closers = lexical_errors.CLOSER_OF
         line_start = self.line_start
         for match in lexemes.TOKEN.finditer(text, pos):
             group = match.lastindex or 0
             start, end = match.span(group)
             if group == 1:  # WORD
                 word = text[start:end]
-                add_kind(kind_of(word, name_kind))
-                add_text(word)
-                add_column(start - line_start)
-                add_end_column(end - line_start)
+                kind = kind_of(word, name_kind)
             elif group == 2:  # OPENER
-                self.opener(start)
+                word = text[start]
+                kind = words[word]
+                if len(brackets) == MOST_BRACKETS:
+                    raise NestedTooDeeplyError(start)
+                brackets.append(Bracket(closers[word], word, self.line, start - line_start))
             elif group == 3:  # CLOSER
-                if not (brackets and brackets[-1][0] == text[start]):
+                word = text[start]
+                if not (brackets and brackets[-1][0] == word):
                     return self.odd_closer(start)
                 brackets.pop()
-                self.add(words[text[start]], start, end)
+                kind = words[word]
             elif group == 4:  # LINE_END
                 if brackets:
                     leap = self.line_end_in_brackets(start, end)
@@ -165,18 +168,20 @@ class Lexer(LineReader):
                     line_start = self.line_start
                     if text[line_start:end] != self.white or tolerant:
                         return self.start_line(line_start)
+                continue
             elif group == 5:  # COLON, and an exclamation mark
                 if fields and len(brackets) == 1:
                     return self.in_field(start)
-                if text[start] == "!":
-                    return self.stray(start)
                 word = text[start:end]
-                add_kind(words[word])
-                add_text(word)
-                add_column(start - line_start)
-                add_end_column(end - line_start)
+                if word == "!":
+                    return self.stray(start)
+                kind = words[word]
             elif group == 6:  # NUMERAL
-                self.number(start, end)
+                word = text[start:end]
+                if word[0] == "0" and lexemes.LEADING_ZERO.fullmatch(word):
+                    self.bad_number(start, end, word)
+                    continue
+                kind = NUMBER
             elif group == 7:  # TEXT
                 if tolerant and self.text_is_open(start, end):
                     prefix = len(text[start:end]) - len(text[start:end].lstrip("bBrRuU"))
@@ -185,24 +190,20 @@ class Lexer(LineReader):
                 if "\n" in text[start:end]:
                     self.lines_within(start, end)
                     line_start = self.line_start
+                continue
             elif group == 8:  # COMMENT
                 tokens.comments.append((self.line, start - line_start, text[start:end]))
+                continue
             elif group == lexemes.END:
                 self.end(start)
                 return None
             else:
                 return self.rare(group, start, end)
+            add_kind(kind)
+            add_text(word)
+            add_column(start - line_start)
+            add_end_column(end - line_start)
         raise AssertionError("the last match is that of the end")
-
-    def opener(self, start: int) -> None:
-        """Add an opening bracket; raises `NestedTooDeeplyError`."""
-        if len(self.brackets) == MOST_BRACKETS:
-            raise NestedTooDeeplyError(start)
-        word = self.text[start]
-        self.brackets.append(
-            Bracket(lexical_errors.CLOSER_OF[word], word, self.line, start - self.line_start)
-        )
-        self.add(self.words[word], start, start + 1)
 
     def line_end(self, start: int, end: int) -> None:
         """Add the end of a statement's line."""
@@ -217,14 +218,6 @@ class Lexer(LineReader):
             self.never_closed(start)
             return self.start_line(self.line_start)
         return self.line_in_brackets(start, end) if self.tolerant else None
-
-    def number(self, start: int, end: int) -> None:
-        """Add a number, or what looks like one."""
-        word = self.text[start:end]
-        if word[0] == "0" and lexemes.LEADING_ZERO.fullmatch(word):
-            self.bad_number(start, end, word)
-        else:
-            self.add(NUMBER, start, end)
 
     def end(self, pos: int) -> None:
         """Close what is open, and fill the lists that hold the same for nearly every token."""

@@ -118,8 +118,12 @@ class _Collector:
                             pending.append((owner, [part]))
                     continue
                 # What is no node (an absent part, a name) has no fields.
-                for field in fields.get(cls, ()):
-                    part = node.__dict__.get(field)
+                names = fields.get(cls)
+                if not names:
+                    continue
+                values = node.__dict__
+                for field in names:
+                    part = values.get(field)
                     if part.__class__ is list:
                         stack.extend(part)
                     elif part is not None:

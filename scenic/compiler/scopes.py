@@ -5,6 +5,7 @@ A scope is built once by `scenic.compiler.resolver` and only read afterwards. No
 
 import ast
 import builtins
+from collections import defaultdict
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from copy import copy
 from dataclasses import field
@@ -144,11 +145,6 @@ class Reference(NamedTuple):
     binding: Binding | None
 
 
-def _place(noted: tuple[Any, Scope]) -> tuple[int, int]:
-    node = noted[0]
-    return node.lineno, node.col_offset
-
-
 REBINDING: Final = frozenset({"exec", "globals", "vars"})
 """Builtins with which programs may bind names in ways that the text does not show."""
 
@@ -211,7 +207,8 @@ class Resolution:
         if nodes is None:
             nodes = list(self.by_class.get(cls, ()))
             if "lineno" in cls._attributes:
-                nodes.sort(key=_place)
+                places = [(node.lineno, node.col_offset) for node, _ in nodes]
+                nodes = [nodes[index] for index in sorted(range(len(nodes)), key=places.__getitem__)]
             self._nodes_in_order[cls] = nodes
         return nodes
 
@@ -235,11 +232,20 @@ class Resolution:
     @cached_property
     def uses(self) -> Mapping[str, Sequence[Reference]]:
         """The uses of each name that no scope within the module binds, in no particular order."""
-        uses: dict[str, list[Reference]] = {}
+        own = set(self.names.values())
+        return {
+            name: uses
+            for name, mentions in self.mentions.items()
+            if (uses := [each for each in mentions if each.binding is None or each.binding in own])
+        }
+
+    @cached_property
+    def mentions(self) -> Mapping[str, Sequence[Reference]]:
+        """All references of each name, in no particular order."""
+        mentions: defaultdict[str, list[Reference]] = defaultdict(list)
         for each in self.references.values():
-            if each.binding is None or each.binding.scope is self.module:
-                uses.setdefault(each.node.id, []).append(each)
-        return uses
+            mentions[each.node.id].append(each)
+        return mentions
 
     @cached_property
     def read(self) -> Collection[Binding]:

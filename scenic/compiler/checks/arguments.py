@@ -95,10 +95,14 @@ class _Callee(NamedTuple):
     """The function or class that a call calls; the call itself gives ``skip`` of its parameters."""
 
     name: str
-    title: str
+    kind: str
     args: ast.arguments
     symbol: Symbol | None = None
     skip: int = 0
+
+    @property
+    def title(self) -> str:
+        return f"the {self.kind} `{self.name}`"
 
     @property
     def definition(self) -> ast.AST | None:
@@ -128,7 +132,7 @@ def _known(node: ast.Call, context: CheckContext) -> _Callee | None:
         args = PROVIDED_PARAMETERS.get(builtin_name)
         if args is None:
             return None
-        return _Callee(builtin_name, f"the {NAMES[builtin_name].kind} `{builtin_name}`", args)
+        return _Callee(builtin_name, NAMES[builtin_name].kind, args)
     symbol = context.definition(node.func)
     skip = 0
     if symbol is None:
@@ -140,8 +144,7 @@ def _known(node: ast.Call, context: CheckContext) -> _Callee | None:
     args = _parameters(symbol.node) if cls is None else cls.parameters
     if args is None:
         return None
-    title = f"the {'method' if skip else kind_of(symbol.node)} `{symbol.name}`"
-    return _Callee(symbol.name, title, args, symbol, skip)
+    return _Callee(symbol.name, "method" if skip else kind_of(symbol.node), args, symbol, skip)
 
 
 def _too_many(
@@ -190,7 +193,7 @@ def _keywords(
 
 
 def _arguments(node: ast.Call, callee: _Callee, context: CheckContext) -> Iterator[Diagnostic]:
-    title, args, skip = callee.title, callee.args, callee.skip
+    args, skip = callee.args, callee.skip
     positional = [*args.posonlyargs, *args.args][skip:]
     if isinstance(callee.definition, scenic.BehaviorDef) and [arg.arg for arg in positional[:1]] == ["self"]:
         return  # The definition is wrong, not the call.
@@ -214,7 +217,7 @@ def _arguments(node: ast.Call, callee: _Callee, context: CheckContext) -> Iterat
     if missing:
         yield context.error(
             "SC211",
-            f"{title} needs {_listed(missing)}",
+            f"{callee.title} needs {_listed(missing)}",
             node,
             f"give {'it' if len(missing) == 1 else 'them'}: {callee.signature}",
             labels=callee.labels(context),
@@ -271,6 +274,13 @@ def _no_numbers(node: ast.Call, callee: _Callee, context: CheckContext) -> Itera
     args = callee.args
     every = [*args.posonlyargs, *args.args]
     positional = every[callee.skip :]
+    numeric_names = {
+        each.arg
+        for each in positional
+        if isinstance(each.annotation, ast.Name) and each.annotation.id in ("float", "int")
+    }
+    if not (numeric_names or (args.defaults and isinstance(callee.definition, scenic.BehaviorDef))):
+        return
     defaults = dict(
         zip(
             [each.arg for each in every[len(every) - len(args.defaults) :]],
@@ -280,11 +290,6 @@ def _no_numbers(node: ast.Call, callee: _Callee, context: CheckContext) -> Itera
     )
     arguments = dict(zip([each.arg for each in positional], node.args, strict=False))
     arguments.update((each.arg, each.value) for each in node.keywords if each.arg is not None)
-    numeric_names = {
-        each.arg
-        for each in positional
-        if isinstance(each.annotation, ast.Name) and each.annotation.id in ("float", "int")
-    }
     for name, value in arguments.items():
         default = defaults.get(name)
         number = default.value if isinstance(default, ast.Constant) else None

@@ -1,7 +1,6 @@
 """The input of every rule: the program, what its names mean, and the making of diagnostics."""
 
 import ast
-from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import Any, Final
@@ -89,7 +88,7 @@ class CheckContext(Model):
 
     def _named_in(self, function: str) -> Iterator[str | None]:
         """The names of attributes that calls of a function of Python name; ``None`` for computed ones."""
-        for node, _ in self.nodes(ast.Call) if function in self._mentions else ():
+        for node, _ in self.nodes(ast.Call) if function in self.resolution.mentions else ():
             if isinstance(node.func, ast.Name) and node.func.id == function:
                 match node.args:
                     case [_, ast.Constant(value=str(attribute)), *_]:
@@ -170,16 +169,9 @@ class CheckContext(Model):
             for alias in statement.names
         }
 
-    @cached_property
-    def _mentions(self) -> Mapping[str, list[ast.AST]]:
-        nodes: defaultdict[str, list[ast.AST]] = defaultdict(list)
-        for reference in self.resolution.references.values():
-            nodes[reference.node.id].append(reference.node)
-        return nodes
-
     def mentions(self, name: str) -> list[tuple[int, int]]:
         """Return the places where a name is read or written, in order."""
-        return sorted(map(position, self._mentions.get(name, ())))
+        return sorted(position(each.node) for each in self.resolution.mentions.get(name, ()))
 
     # What is said about it
 

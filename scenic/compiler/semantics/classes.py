@@ -10,6 +10,7 @@ from typing import Any, Final
 
 from scenic import language
 from scenic.compiler import tree as scenic
+from scenic.compiler.scopes import Binding
 from scenic.compiler.semantics.modules import Module, Modules
 from scenic.compiler.semantics.names import Names
 from scenic.compiler.semantics.symbols import Symbol, SymbolKind, symbol_of_binding
@@ -179,6 +180,7 @@ class Classes:
         self.modules: Final = modules
         self._names: Final[dict[Module, Names]] = {} if names is None else {names.module: names}
         self._own: Final[dict[object, Any]] = {}
+        self._named: Final[dict[Binding, Class | None]] = {}
         self._others: Final = modules.derived
         self._examined: Final[set[object]] = set()
         self._program: Final = None if names is None else names.module
@@ -201,7 +203,12 @@ class Classes:
             return None
         if is_of_library(symbol.filename):
             return module.derived(symbol.binding or symbol.node, lambda: self._of_name(module, symbol))
-        return self._of_name(module, symbol)
+        binding = symbol.binding
+        if binding is None:
+            return self._of_name(module, symbol)
+        if binding not in self._named:
+            self._named[binding] = self._of_name(module, symbol)
+        return self._named[binding]
 
     def of_node(self, module: Module, node: ast.AST) -> Class | None:
         """Return the class that a statement of a module defines, whatever else has its name."""

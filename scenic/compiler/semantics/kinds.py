@@ -29,7 +29,6 @@ __all__ = [
     "ValueKind",
     "accepts",
     "joint",
-    "kind_of_constant",
     "kind_of_type",
 ]
 
@@ -143,14 +142,3 @@ def _accepts_sequence(wanted: Type, kind: ValueKind) -> bool:
         return kind.items is None or accepts((wanted.items,), kind.items)
     fits = bool(wanted.lengths) and (kind.size is None or kind.size in wanted.lengths)
     return fits and kind.odd is None and (kind.items is None or kind.items.name in NUMBERS)
-
-
-def kind_of_constant(value: object) -> ValueKind | None:
-    """Return the kind of a constant in the text."""
-    if value is None:
-        return NOTHING
-    if isinstance(value, bool):
-        return BOOLEAN
-    if isinstance(value, int | float):
-        return NUMBER
-    return TEXT if isinstance(value, str) else None

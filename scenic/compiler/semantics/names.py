@@ -129,21 +129,27 @@ class Names:
         if not isinstance(name, ast.Name):
             return None
         binding = self.resolution.binding(name)
-        target = self.brought.get(name.id) if binding is None else self.own(binding)
+        if binding is not None:
+            return self._symbols.get(binding) or self.symbol_of(self.own(binding))
+        target = self.brought.get(name.id)
         if target is not None:
             return self.symbol_of(target)
         return builtin_symbol(name.id) if self.module.is_scenic else None
 
     def symbol_of(self, target: Exported | FoundModule) -> Symbol:
         """Return the symbol of a module, or of what is behind a name that a module has."""
-        if isinstance(target, Exported):
-            target = self.modules.follow(target)
+        if isinstance(target, FoundModule) or target.binding is None:
+            return symbol_of_exported(self.modules, target)
+        binding = target.binding
+        if binding not in self._symbols:
+            self._symbols[binding] = self._symbol_behind(self.modules.follow(target))
+        return self._symbols[binding]
+
+    def _symbol_behind(self, target: Exported | FoundModule) -> Symbol:
         if isinstance(target, FoundModule) or target.module is not self.module or target.binding is None:
             return symbol_of_exported(self.modules, target)
         # Symbols of the module itself go with its model.
-        if target.binding not in self._symbols:
-            self._symbols[target.binding] = symbol_of_binding(self.module, target.binding)
-        return self._symbols[target.binding]
+        return self._symbols.get(target.binding) or symbol_of_binding(self.module, target.binding)
 
     def own(self, binding: Binding) -> Exported:
         """A binding of the module, to be followed."""

@@ -14,7 +14,7 @@ from scenic.compiler import tree as scenic
 from scenic.compiler.scopes import Binding, BindingKind, Scope, ScopeKind
 from scenic.compiler.semantics import kinds
 from scenic.compiler.semantics.classes import LIBRARY, Class, Classes, is_of_library
-from scenic.compiler.semantics.kinds import SEQUENCES, ValueKind, joint, kind_of_constant, kind_of_type
+from scenic.compiler.semantics.kinds import SEQUENCES, ValueKind, joint, kind_of_type
 from scenic.compiler.semantics.modules import Exported, FoundModule, Module
 from scenic.compiler.semantics.symbols import (
     Symbol,
@@ -92,6 +92,17 @@ class Value(NamedTuple):
 
 _UNKNOWN: Final = Value()
 _NUMBER: Final = Value(kinds.NUMBER)
+_FUNCTION: Final = Value(kinds.FUNCTION)
+_CONSTANTS: Final[Mapping[type, Value]] = MappingProxyType(
+    {
+        bool: Value(kinds.BOOLEAN),
+        float: _NUMBER,
+        int: _NUMBER,
+        str: Value(kinds.TEXT),
+        type(None): Value(kinds.NOTHING),
+    }
+)
+"""The values of constants in the text."""
 
 
 class Values:
@@ -195,8 +206,8 @@ class Values:
         return _NUMBER if self.value(module, node.operand, depth).kind == kinds.NUMBER else _UNKNOWN
 
     def _arithmetic(self, module: Module, node: ast.BinOp, depth: int) -> Value:
-        left, right = (self.value(module, side, depth).kind for side in (node.left, node.right))
-        return Value(_binary(left, right, node.op))
+        left = self.value(module, node.left, depth).kind
+        return Value(_binary(left, self.value(module, node.right, depth).kind, node.op))
 
     def _operation(self, module: Module, node: scenic.Operation, depth: int) -> Value:
         if node.operator == "deg" and node.operands[0] is not None:
@@ -351,7 +362,7 @@ class Values:
         if provided_name is not None:
             name_kind = NAMES[provided_name].kind if provided_name in NAMES else None
             if name_kind is NameKind.FUNCTION:
-                return Value(kinds.FUNCTION)
+                return _FUNCTION
             return Value(kinds.CLASS if name_kind in _MADE_BY_CALLS else None)
         import_target = names.brought.get(node.id)
         if import_target is None:
@@ -583,7 +594,7 @@ _INFERENCES: Final[Mapping[type[ast.AST], Callable[[Values, Module, Any, int], V
         ast.Attribute: Values._attribute,
         ast.BinOp: Values._arithmetic,
         ast.Call: Values._call,
-        ast.Constant: lambda _values, _module, node, _depth: Value(kind_of_constant(node.value)),
+        ast.Constant: lambda _values, _module, node, _depth: _CONSTANTS.get(type(node.value), _UNKNOWN),
         ast.Dict: Values._dictionary,
         ast.DictComp: Values._dictionary_comprehension,
         ast.IfExp: Values._conditional,
