@@ -8,7 +8,7 @@ import ast
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from types import MappingProxyType
-from typing import Any, Final, NamedTuple
+from typing import Any, Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks import CheckContext, check
@@ -66,13 +66,8 @@ def bind(tree: ast.Module) -> Resolution:
         return _Collector(tree).resolution()
 
 
-class _Event(NamedTuple):
-    scope: Scope
-    name: str
-    kind: BindingKind
-    site: ast.AST
-
-
+_Event = tuple[Scope, str, BindingKind, ast.AST]
+"""A name that is bound in a scope, in what way, and by which node."""
 _Task = tuple[ast.AST, Scope]
 
 
@@ -104,7 +99,7 @@ class _Collector:
                 if cls is ast.Name:
                     uses.append((node, scope))
                     if node.ctx.__class__ is not ast.Load and node not in self._plain_targets:
-                        self._events.append(_Event(scope, node.id, BindingKind.VARIABLE, node))
+                        self._events.append((scope, node.id, BindingKind.VARIABLE, node))
                     continue
                 if cls is ast.Constant:
                     continue
@@ -132,23 +127,35 @@ class _Collector:
     def resolution(self) -> Resolution:
         """Visit all nodes, and return what has been collected."""
         self._walk()
-        bound = {(event.scope, event.name) for event in self._events}
+        bound = {event[:2] for event in self._events}
         reserved_names: list[tuple[str, ast.AST]] = []
         for event in self._events:
-            if event.name in RESERVED:
-                reserved_names.append((event.name, event.site))
+            _, name, _, site = event
+            if name in RESERVED:
+                reserved_names.append((name, site))
             else:
                 self._bind(event, bound)
         references: dict[ast.AST, Reference] = {}
+        mentions: defaultdict[str, list[Reference]] = defaultdict(list)
+        read: set[Binding] = set()
         meanings: dict[tuple[Scope, str], Binding | None] = {}
         for node, scope in self._uses:
-            key = (scope, node.id)
+            name = node.id
+            key = (scope, name)
             if key not in meanings:
-                meanings[key] = scope.lookup(node.id)
-            references[node] = Reference(node, scope, meanings[key])
+                meanings[key] = scope.lookup(name)
+            binding = meanings[key]
+            # Without a call in Python, of which there would be one for each name.
+            reference = tuple.__new__(Reference, (node, scope, binding))
+            references[node] = reference
+            mentions[name].append(reference)
+            if binding is not None and node.ctx.__class__ is ast.Load:
+                read.add(binding)
         resolution = Resolution(
             self._module,
             references,
+            mentions,
+            read,
             self._scopes,
             self._nonlocals,
             self._nodes,
@@ -161,25 +168,25 @@ class _Collector:
 
     def _bind(self, event: _Event, bound: set[tuple[Scope, str]]) -> None:
         """Bind a name in the scope that its declarations name."""
-        scope = event.scope
-        if event.name in scope.global_names:
+        scope, name, kind, site = event
+        if name in scope.global_names:
             scope = self._module
-        elif event.name in scope.nonlocal_names:
+        elif name in scope.nonlocal_names:
             scope = next(
                 (
                     outer
                     for outer in scope.ancestors()
-                    if event.name not in outer.nonlocal_names
+                    if name not in outer.nonlocal_names
                     and outer.kind not in (ScopeKind.CLASS, ScopeKind.MODULE)
-                    and (outer, event.name) in bound
+                    and (outer, name) in bound
                 ),
                 scope,
             )
-        binding = scope.bindings.get(event.name)
+        binding = scope.bindings.get(name)
         if binding is None:
-            binding = scope.bindings[event.name] = Binding(event.name, scope)
-        binding.sites.append(event.site)
-        binding.kinds.add(event.kind)
+            binding = scope.bindings[name] = Binding(name, scope)
+        binding.sites.append(site)
+        binding.kinds.add(kind)
 
     # Pieces
 
@@ -190,7 +197,7 @@ class _Collector:
 
     def _note(self, scope: Scope, name: str | None, kind: BindingKind, site: ast.AST) -> None:
         if name:
-            self._events.append(_Event(scope, name, kind, site))
+            self._events.append((scope, name, kind, site))
 
     def _parameters(self, args: ast.arguments, outer: Scope, inner: Scope) -> Iterator[_Task]:
         """Binds parameters in ``inner``; defaults and annotations belong to ``outer``."""

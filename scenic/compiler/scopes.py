@@ -5,7 +5,6 @@ A scope is built once by `scenic.compiler.resolver` and only read afterwards. No
 
 import ast
 import builtins
-from collections import defaultdict
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from copy import copy
 from dataclasses import field
@@ -43,6 +42,8 @@ PROVIDED: Final = frozenset(dir(builtins)) | frozenset(NAMES) | frozenset(TRACKE
 class ScopeKind(StrEnum):
     """The kinds of constructs that open scopes."""
 
+    __hash__ = str.__hash__  # that of enumerations is a function in Python
+
     MODULE = "module"
     CLASS = "class"
     FUNCTION = "function"
@@ -57,6 +58,8 @@ class ScopeKind(StrEnum):
 
 class BindingKind(StrEnum):
     """The ways in which names are bound."""
+
+    __hash__ = str.__hash__  # as above
 
     VARIABLE = "variable"
     PARAMETER = "parameter"
@@ -156,8 +159,9 @@ REFLECTION: Final = REBINDING | {"dir", "eval", "locals"}
 class Resolution:
     """Every scope, binding and reference of a module.
 
-    ``module`` is the scope of the whole module. ``references`` are the meanings of names, in no particular order; names
-    bound by other nodes than ``ast.Name`` (functions, parameters, imports, captures) are found through `Binding.sites`.
+    ``module`` is the scope of the whole module. ``references`` are the meanings of names, in no particular order, and
+    ``mentions`` the same by the names; names bound by other nodes than ``ast.Name`` (functions, parameters, imports,
+    captures) are found through `Binding.sites`. ``read`` are the bindings whose values are read anywhere.
     ``scopes`` gives the scope that a node opens, ``nonlocals`` the scope in which a ``nonlocal`` statement stands.
     ``by_class`` are all nodes but names and constants by their classes, each with its scope, in no particular order.
     ``tolerated`` are the names read where a missing name is provided for, ``reserved`` the places that bind a name which must not be bound.
@@ -166,6 +170,8 @@ class Resolution:
 
     module: Scope
     references: Mapping[ast.AST, Reference]
+    mentions: Mapping[str, Sequence[Reference]]
+    read: Collection[Binding]
     scopes: Mapping[ast.AST, Scope]
     nonlocals: Mapping[ast.AST, Scope]
     by_class: Mapping[type[ast.AST], Sequence[tuple[Any, Scope]]]
@@ -183,7 +189,7 @@ class Resolution:
     def _reflecting(self) -> frozenset[str]:
         return REFLECTION.intersection(self.uses).difference(self.names)
 
-    @property
+    @cached_property
     def reflective(self) -> bool:
         """Return whether the program may read and bind names in ways that the text does not show (``globals()``, ``exec``)."""
         return bool(self._reflecting)
@@ -237,23 +243,6 @@ class Resolution:
             name: uses
             for name, mentions in self.mentions.items()
             if (uses := [each for each in mentions if each.binding is None or each.binding in own])
-        }
-
-    @cached_property
-    def mentions(self) -> Mapping[str, Sequence[Reference]]:
-        """All references of each name, in no particular order."""
-        mentions: defaultdict[str, list[Reference]] = defaultdict(list)
-        for each in self.references.values():
-            mentions[each.node.id].append(each)
-        return mentions
-
-    @cached_property
-    def read(self) -> Collection[Binding]:
-        """The bindings whose values are read anywhere."""
-        return {
-            each.binding
-            for each in self.references.values()
-            if each.binding is not None and each.node.ctx.__class__ is ast.Load
         }
 
     @cached_property

@@ -34,6 +34,8 @@ __all__ = [
 class SymbolKind(StrEnum):
     """The kinds of symbols."""
 
+    __hash__ = str.__hash__  # that of enumerations is a function in Python
+
     MODULE = "module"
     CLASS = "class"
     FUNCTION = "function"
