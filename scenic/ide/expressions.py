@@ -57,5 +57,8 @@ def expression(
         if isinstance(node, ast.Name)
     }
     resolution = module.resolution
-    resolution = replace(resolution, references={**resolution.references, **references})
+    mentions = dict(resolution.mentions)
+    for each in references.values():
+        mentions[each.node.id] = [*mentions.get(each.node.id, ()), each]
+    resolution = replace(resolution, references={**resolution.references, **references}, mentions=mentions)
     return Model(replace(module, resolution=resolution), project), statement.value

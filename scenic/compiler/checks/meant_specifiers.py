@@ -22,8 +22,9 @@ def check_meant_specifiers(context: CheckContext) -> Iterator[Diagnostic]:
     """Report SC111, SC113 and SC311 for a specifier without `new`, without a comma before it, or missing after one."""
     for cls in (ast.Assign, ast.Expr):
         for node, _ in context.nodes(cls):
-            targets = node.targets if cls is ast.Assign else ()
-            yield from _dangling_comma(node.value, targets, context)
+            if isinstance(node.value, ast.Tuple):
+                targets = node.targets if cls is ast.Assign else ()
+                yield from _dangling_comma(node.value, targets, context)
     for node, _ in context.nodes(scenic.Operation):
         yield from _missing_new(node, context)
     for node, _ in context.nodes(scenic.SpecifierPhrase):
@@ -31,10 +32,10 @@ def check_meant_specifiers(context: CheckContext) -> Iterator[Diagnostic]:
 
 
 def _dangling_comma(
-    value: ast.expr, targets: Sequence[ast.expr], context: CheckContext
+    value: ast.Tuple, targets: Sequence[ast.expr], context: CheckContext
 ) -> Iterator[Diagnostic]:
     """Report mistakes such as ``ego = new Object with width 3,``."""
-    if not (isinstance(value, ast.Tuple) and len(value.elts) == 1 and isinstance(value.elts[0], scenic.New)):
+    if not (len(value.elts) == 1 and isinstance(value.elts[0], scenic.New)):
         return
     (first,) = value.elts
     if position(value) != position(first):

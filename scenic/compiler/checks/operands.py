@@ -29,6 +29,8 @@ def _call(node: ast.Call, scope: Scope, context: CheckContext) -> Iterator[Diagn
         yield from _method(node, method, context)
         return
     declaration = NAMES[name or ""]
+    if not declaration.accepted:
+        return
     arguments = dict(zip(declaration.parameters, _before_stars(node.args), strict=False))
     arguments.update((each.arg, each.value) for each in node.keywords if each.arg is not None)
     for parameter, types in declaration.accepted.items():

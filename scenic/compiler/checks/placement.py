@@ -30,12 +30,13 @@ def check_placement(context: CheckContext) -> Iterator[tuple[ast.AST, Diagnostic
         if where.broken:
             continue
         header_before = False
+        checked = _CHECKED if where.place is Place.CLASS else _CHECKED_ELSEWHERE
         for statement in statements:
             if statement.__class__ is scenic.ErrorStatement:
                 header_before = True
             elif isinstance(statement, HEADED):
                 header_before = False
-            if statement.__class__ in _CHECKED:
+            if statement.__class__ in checked:
                 if header_before and statement.__class__ in _OF_BEHAVIORS:
                     # It may belong to the block whose header is wrong.
                     yield statement, None
@@ -177,3 +178,5 @@ _CHECKED: Final = frozenset(
         *(getattr(scenic, node) for node in STATEMENTS),
     }
 )
+_CHECKED_ELSEWHERE: Final = _CHECKED - {ast.AnnAssign, ast.Assign}
+"""Assignments stand everywhere but in classes."""
