@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterable
+from functools import lru_cache
 from typing import Final
 
 __all__ = [
@@ -15,6 +16,7 @@ __all__ = [
 ]
 
 
+@lru_cache(4096)  # While a program is written, most of its names stay the same.
 def distance(first: str, second: str, *, limit: int) -> int:
     """Number of single edits that turn one name into the other, or ``limit + 1`` if there are more than ``limit``.
 

@@ -7,7 +7,8 @@ tree again.
 
 import ast
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from types import MappingProxyType
 from typing import Final
 
 from scenic.compiler.checks import (
@@ -45,32 +46,37 @@ from scenic.language.garbage import no_garbage_collection
 
 __all__ = ["CheckContext", "check", "lint"]
 
-_NODE_RULES: Final[tuple[tuple[type[ast.AST], NodeRule], ...]] = tuple(
-    rule
-    for module in (
-        angles,
-        arguments,
-        clashes,
-        class_bodies,
-        conditions,
-        distributions,
-        making,
-        operands,
-        overriding,
-        python_habits,
-        randomness,
-        specifiers,
-        values,
-    )
-    for rule in module.RULES.items()
+_OF_NODES: Final = (
+    angles,
+    arguments,
+    clashes,
+    class_bodies,
+    conditions,
+    distributions,
+    making,
+    operands,
+    overriding,
+    python_habits,
+    randomness,
+    specifiers,
+    values,
+)
+_NODE_RULES: Final[Mapping[type[ast.AST], tuple[NodeRule, ...]]] = MappingProxyType(
+    {
+        cls: tuple(module.RULES[cls] for module in _OF_NODES if cls in module.RULES)
+        for each in _OF_NODES
+        for cls in each.RULES
+    }
 )
 
 
 def _nodes(context: CheckContext) -> Iterator[Diagnostic]:
     """Yield the diagnostics of rules about single nodes."""
-    for cls, rule in _NODE_RULES:
+    for cls, rules in _NODE_RULES.items():
         for node, scope in context.nodes(cls):
-            yield from rule(node, scope, context)
+            # All rules while the processor has the node in its cache.
+            for rule in rules:
+                yield from rule(node, scope, context)
 
 
 def _misplaced(context: CheckContext) -> Iterator[Diagnostic]:

@@ -36,20 +36,28 @@ _WITHOUT_MEMBERS: Final = frozenset({"object", "Exception", "ABC"})
 class ClassMember:
     """Something that instances of a class have.
 
-    ``owner`` is the name of the class that defines it. ``default`` is the text of a property's default or of an
-    attribute's value, ``type`` the type in words; ``attributes`` are those in the brackets of a property definition, and
-    ``needs`` the properties that the default reads. ``symbol`` is ``None`` for what built-in classes define.
+    ``owner`` is the name of the class that defines it, ``builtin_default`` the text of a default that the language declares,
+    ``type`` the type in words; ``attributes`` are those in the brackets of a property definition, and ``needs`` the
+    properties that the default reads. ``value`` is a property's default or an attribute's value in a program.
+    ``symbol`` is ``None`` for what built-in classes define.
     """
 
     name: str
     kind: SymbolKind
     owner: str
-    default: str | None = None
+    builtin_default: str | None = None
     type: str | None = None
     attributes: tuple[str, ...] = ()
     needs: tuple[str, ...] = ()
     declared: str | None = field(default=None, compare=False)
     symbol: Symbol | None = None
+    value: ast.expr | None = field(default=None, compare=False)
+
+    @property
+    def default(self) -> str | None:
+        """The text of a property's default or of an attribute's value."""
+        module = None if self.symbol is None else self.symbol.module
+        return self.builtin_default if module is None or self.value is None else module.text(self.value)
 
     @property
     def documentation(self) -> str | None:
@@ -363,23 +371,25 @@ def _own(module: Module, symbol: Symbol, node: ast.ClassDef) -> Iterator[ClassMe
                 item.name,
                 SymbolKind.PROPERTY,
                 symbol.name,
-                module.text(item.value),
                 attributes=tuple(item.attributes),
                 needs=_needs(item.value),
                 symbol=place,
+                value=item.value,
             )
     scope = module.resolution.scopes.get(node)
     for binding in () if scope is None else scope.bindings.values():
         inner = symbol_of_binding(module, binding)
         kind = SymbolKind.METHOD if inner.kind is SymbolKind.METHOD else SymbolKind.ATTRIBUTE
         statement = None if inner.node is None else module.assignment_of.get(inner.node)
-        value = None if statement is None or statement.value is None else module.text(statement.value)
-        yield ClassMember(binding.name, kind, symbol.name, value, symbol=inner)
+        value = None if statement is None else statement.value
+        yield ClassMember(binding.name, kind, symbol.name, symbol=inner, value=value)
     yield from _set_by_methods(module, symbol, node)
 
 
 def _needs(default: ast.expr) -> tuple[str, ...]:
     """Return the properties that a default reads."""
+    if isinstance(default, ast.Constant):
+        return ()
     needs = [
         part.attr
         for part in walk(default)

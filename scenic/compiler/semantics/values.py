@@ -527,6 +527,8 @@ def _common(values: Sequence[Value]) -> Value:
     if not values:
         return _UNKNOWN
     first = values[0]
+    if values.count(first) == len(values):
+        return first
     return Value(
         joint([each.kind for each in values]),
         first.cls if all(each.cls == first.cls for each in values) else None,
