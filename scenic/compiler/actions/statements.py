@@ -8,6 +8,7 @@ from scenic.compiler import tree
 from scenic.compiler.actions.common import Place, make, place_of
 from scenic.compiler.actions.definitions import DefinitionActions
 from scenic.compiler.actions.expressions import ExpressionActions
+from scenic.compiler.traversal import parts
 from scenic.language.spelling import nearest
 
 _PARTS: Final = frozenset({"setup", "compose"})
@@ -220,11 +221,7 @@ class StatementActions(DefinitionActions, ExpressionActions):
                     code="SC117",
                 )
                 return
-            for value in vars(node).values():
-                if isinstance(value, ast.AST):
-                    stack.append(value)
-                elif type(value) is list:
-                    stack += [each for each in value if isinstance(each, ast.AST)]
+            stack += parts(node)
 
 
 def _annotated(statement: object) -> str | None:
