@@ -3,7 +3,6 @@
 import ast
 import re
 import unicodedata
-from functools import lru_cache
 from typing import Final
 
 _SIMPLE_ESCAPES: Final = {
@@ -28,7 +27,6 @@ class LiteralError(ValueError):
     """The error for a literal that has no value; the message gives the reason."""
 
 
-@lru_cache(1024)  # Programs repeat their numbers.
 def number_value(text: str) -> int | float | complex:
     """The value of a number; raises `LiteralError` for a decimal integer of too many digits."""
     if text.isdecimal():

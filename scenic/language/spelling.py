@@ -16,7 +16,6 @@ __all__ = [
 ]
 
 
-@lru_cache(4096)  # While a program is written, most of its names stay the same.
 def distance(first: str, second: str, *, limit: int) -> int:
     """Number of single edits that turn one name into the other, or ``limit + 1`` if there are more than ``limit``.
 
@@ -28,6 +27,11 @@ def distance(first: str, second: str, *, limit: int) -> int:
     # Each edit gets rid of one character that the other name does not have.
     if len(set(first).difference(second)) > limit or len(set(second).difference(first)) > limit:
         return limit + 1
+    return _distance_of_similar(first, second, limit)
+
+
+@lru_cache(4096)  # While a program is written, most of its names stay the same.
+def _distance_of_similar(first: str, second: str, limit: int) -> int:
     before_last: list[int] = []
     last = list(range(len(second) + 1))
     for i, a in enumerate(first, 1):

@@ -50,6 +50,8 @@ class CommonActions:
     def __init__(self, tokens: Tokens) -> None:
         self._tokens = tokens
         self._texts = tokens.texts
+        self._numbers: dict[str, int | float | complex] = {}
+        """The values of the numbers read so far: most are written again and again."""
         self.problems: dict[tuple[str, Place], SyntaxProblem] = {}
         self.failure: SyntaxProblem | None = None
 

@@ -108,8 +108,12 @@ class ExpressionActions(CommonActions):
         return node
 
     def number_value(self, index: int) -> int | float | complex:
+        text = self._texts[index]
+        value = self._numbers.get(text)
+        if value is not None:
+            return value
         try:
-            return literals.number_value(self._texts[index])
+            return self._numbers.setdefault(text, literals.number_value(text))
         except literals.LiteralError as problem:
             self._report(self.place_of_token(index), str(problem), code="SC104")
             return 0
