@@ -1,7 +1,7 @@
 """The built-in simulator of traffic in the plane (section 5.4 of the driving specification).
 
 Cars have a signed speed along their heading, changed by throttle and brakes, and turn by their steering. Everything else keeps its
-velocity. Objects pass through each other.
+velocity. Objects pass through each other, which is noted.
 """
 
 import math
@@ -19,9 +19,10 @@ from scenic.runtime.values.lazy import MEMO
 from scenic.runtime.values.rows import orientation_of, vector_of
 from scenic.runtime.values.values import Orientation, Vector
 from scenic.simulators.cameras import Cameras
+from scenic.simulators.contacts import Contacts
 from scenic.simulators.newtonian.controls import Driven, Walking
 from scenic.simulators.newtonian.terrain import Terrain
-from scenic.simulators.results import ActionsTaken
+from scenic.simulators.results import ActionsTaken, SimulationState
 from scenic.simulators.simulation import Poses, Simulation
 
 __all__ = ["NewtonianSimulation", "NewtonianSimulator", "State"]
@@ -100,6 +101,7 @@ class NewtonianSimulation(DrivingSimulation):
 
     steering_lead = 0.5
     _may_interrupt_steps = True
+    _notes_contacts: ClassVar[bool] = True
     _car_gains: ClassVar[dict[str, tuple[float, float, float]]] = {
         "keep": (0.2, 0.2, 0.02),
         "turn": (0.4, 0.3, 0.1),
@@ -110,6 +112,7 @@ class NewtonianSimulation(DrivingSimulation):
         self._states: dict[int, State] = {}
         self._cameras = Cameras()
         self._terrain = Terrain.under(scene)
+        self._contacts: Contacts | None = None
         super().__init__(scene, timestep=0.1 if timestep is None else timestep, **options)
 
     def createObjectInSimulator(self, obj: Any) -> None:
@@ -126,6 +129,29 @@ class NewtonianSimulation(DrivingSimulation):
             obj.resetControls()
         if isinstance(obj, Walking):
             obj.resetGait()
+
+    def recordCurrentState(self) -> None:
+        """Append the state to the trajectory, and look for objects that come to overlap."""
+        super().recordCurrentState()
+        state = self.trajectory[-1]
+        if not self._notes_contacts or not isinstance(state, SimulationState):
+            return
+        if self._contacts is None:
+            self._contacts = Contacts(self.objects)
+        self._contacts.add(state)
+
+    def conclude(self) -> None:
+        """Note which objects came to overlap."""
+        super().conclude()
+        contacts = [] if self._contacts is None else self._contacts.firsts()
+        if not contacts:
+            return
+        names = [self._original.names.get(item) for item in self._original.objects]
+        for step, first, second, (x, y) in contacts:
+            name = names[second] if second < len(names) else None
+            name = name or f"{type(self.objects[second]).__name__} {second}"
+            self.notes.append((step, first, f"touches {name} at ({x:.1f}, {y:.1f})"))
+        self.notes.sort(key=lambda note: note[0])
 
     def sense(self) -> None:
         """Let cameras see."""

@@ -24,6 +24,7 @@ class SumoSimulation(NewtonianSimulation):
     """One run; see `SumoSimulator`."""
 
     _may_interrupt_steps = False
+    _notes_contacts = False  # Vehicles that have left the map stay in the scene, where others reach them.
 
     def __init__(self, scene: Scene, network: Path, *, timestep: float, **options: Any) -> None:
         self._network = network
