@@ -210,8 +210,8 @@ FAULTS: Final = (
         (
             Change(
                 _LEXER,
-                "add_end_column(end - line_start)\n            elif group == 2:",
-                "add_end_column(end - line_start + 1)\n            elif group == 2:",
+                "            add_end_column(end - line_start)\n",
+                "            add_end_column(end - line_start + (group == 1))\n",
             ),
         ),
     ),
