@@ -1,5 +1,6 @@
 """Objects that come to overlap, in simulators that let objects pass through each other."""
 
+from array import array
 from collections.abc import Sequence
 from itertools import chain
 from typing import Any, Final
@@ -29,17 +30,22 @@ class Contacts:
 
     def __init__(self, objects: Sequence[Any]) -> None:
         self._objects = objects
-        self._states: list[SimulationState] = []
-        self._start = 0
+        # Numbers alone: objects that outlive a step would cost the garbage collector more than all else here costs.
+        self._places, self._turns = array("d"), array("d")
+        self._count = self._waiting = self._start = 0
         self._since: list[int] = []
         self._known: set[tuple[int, int]] = set()
         self._firsts: list[tuple[int, int, int, tuple[float, float]]] = []
 
     def add(self, state: SimulationState) -> None:
         """Take the next state."""
-        if self._states and (len(self._states) == _STATES or len(state) != len(self._states[0])):
+        count = len(state)
+        if self._waiting == _STATES or count != self._count:
             self._look()
-        self._states.append(state)
+        self._count = count
+        self._waiting += 1
+        self._places.extend(chain.from_iterable([place.row for place in state.positions]))
+        self._turns.extend(chain.from_iterable([turn.q for turn in state.orientations]))
 
     def firsts(self) -> list[tuple[int, int, int, tuple[float, float]]]:
         """Return, for each pair, the first state in which it overlaps, the two numbers, and about where, in metres."""
@@ -48,25 +54,22 @@ class Contacts:
 
     def _look(self) -> None:
         """Look at the states that wait."""
-        states, start = self._states, self._start
-        if not states:
-            return
-        self._states, self._start = [], start + len(states)
-        count = len(states[0])
+        steps, count, start = self._waiting, self._count, self._start
+        places = np.array(self._places).reshape(steps, count, 3)
+        turns = np.array(self._turns).reshape(steps, count, 4)
+        self._places, self._turns = array("d"), array("d")
+        self._waiting, self._start = 0, start + steps
         self._since += [start] * (count - len(self._since))
-        if count < 2:
+        if count < 2 or not steps:
             return
-        rows = chain.from_iterable([place.row for state in states for place in state])
-        places = np.fromiter(rows, np.float64, len(states) * count * 3).reshape(len(states), count, 3)
         sizes = np.array([(item.width, item.length, item.height) for item in self._objects[:count]], float)
         radii = np.linalg.norm(sizes, axis=1) / 2
         one, other = self._pairs(places, radii)
-        is_still = (places == places[0]).all(axis=(0, 2))
-        is_still &= [a == b for a, b in zip(states[0].orientations, states[-1].orientations, strict=True)]
+        is_still = (places == places[0]).all(axis=(0, 2)) & (turns == turns[0]).all(axis=(0, 2))
         pair, step = _near(places, radii, one, other, is_still)
         if not len(pair):
             return
-        bodies = [self._body(numbers[pair], step, places, sizes, states) for numbers in (one, other)]
+        bodies = [self._body(numbers[pair], step, places, turns, sizes) for numbers in (one, other)]
         hits = np.flatnonzero(~collide(bodies, np.array([[0, 1]]), lanes=len(pair)).free)
         for hit in hits[np.unique(pair[hits], return_index=True)[1]].tolist():
             first, second = int(one[pair[hit]]), int(other[pair[hit]])
@@ -92,21 +95,14 @@ class Contacts:
         is_open = [pair not in self._known for pair in zip(one.tolist(), other.tolist(), strict=True)]
         return one[is_open], other[is_open]
 
-    def _body(
-        self,
-        numbers: Indices,
-        steps: Indices,
-        places: Floats,
-        sizes: Floats,
-        states: Sequence[SimulationState],
-    ) -> Body:
+    def _body(self, numbers: Indices, steps: Indices, places: Floats, turns: Floats, sizes: Floats) -> Body:
         """Return the bodies of these objects in these states, as lanes."""
         shapes = [item.shape.mesh for item in self._objects[: places.shape[1]]]
         meshes = {mesh: index for index, mesh in enumerate(dict.fromkeys(shapes))}
         choice = np.array([meshes[mesh] for mesh in shapes])[numbers] if len(meshes) > 1 else None
-        lanes = zip(numbers.tolist(), steps.tolist(), strict=True)
-        turns = np.array([states[step].orientations[number].q for number, step in lanes], dtype=np.float64)
-        return Body(tuple(meshes), choice, Poses(places[steps, numbers], turns, sizes[numbers]))
+        return Body(
+            tuple(meshes), choice, Poses(places[steps, numbers], turns[steps, numbers], sizes[numbers])
+        )
 
 
 def _near(
