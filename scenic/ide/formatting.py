@@ -11,7 +11,7 @@ The result means the same and formats to itself; a text with mistakes is left al
 import ast
 import difflib
 import re
-from bisect import bisect_right
+from bisect import bisect_left, bisect_right
 from collections import Counter, deque
 from collections.abc import Container, Iterable, Iterator, Sequence
 from dataclasses import field
@@ -187,7 +187,8 @@ def _formatted(snapshot: Snapshot) -> str | None:
     if snapshot.parsed.diagnostics:
         return None
     lines = _logical_lines(snapshot.tokens)
-    parts = [_parts(snapshot, line) for line in lines]
+    starts, misread_lines = _starts_of_statements(snapshot), _lines_of_misread(snapshot)
+    parts = [[] if line.first in misread_lines else _parts(snapshot, line, starts) for line in lines]
     needless_tokens = _needless(snapshot, parts)
     layout = _Layout(snapshot.tokens)
     for line, of_line in zip(lines, parts, strict=True):
@@ -201,18 +202,16 @@ def _formatted(snapshot: Snapshot) -> str | None:
     return result if _same(snapshot.tree, snapshot.tokens, result) else None
 
 
-def _parts(snapshot: Snapshot, line: _Line) -> list[list[Lexeme]]:
+def _parts(snapshot: Snapshot, line: _Line, starts: Container[tuple[int, int]]) -> list[list[Lexeme]]:
     """Return the statements and headers on a logical line; none if it takes several lines, which stay as they are."""
     if line.first != line.last:
         return []
-    tokens, starts = snapshot.tokens, _starts_of_statements(snapshot)
+    tokens = snapshot.tokens
     begin, end = line.begin, bisect_right(tokens.lines, line.first)
     cuts = [index for index in range(begin, end) if (tokens.lines[index], tokens.columns[index]) in starts]
     if not cuts or cuts[0] > begin:
         cuts.insert(0, begin)
     parts = [lexemes(snapshot, *cut) for cut in zip(cuts, [*cuts[1:], end], strict=True)]
-    if line.first in _lines_of_misread(snapshot):
-        return []
     return [part[:-1] if part[-1].text == ";" else part for part in parts]
 
 
@@ -252,10 +251,10 @@ def _needless(snapshot: Snapshot, parts: Sequence[list[list[Lexeme]]]) -> frozen
     for part in (part for of_line in parts for part in of_line):
         candidates += [(token,) for token in _needless_commas(part)]
         candidates += [(opening.token, closing.token) for opening, closing in needless_pairs(part)]
-    lines = snapshot.tokens.lines
+    lines = [snapshot.tokens.lines[each[0]] for each in candidates]  # in their order, as parts are
     needless_tokens: set[int] = set()
     for first, last, statements in _groups(snapshot.tree):
-        near = [each for each in candidates if first <= lines[each[0]] <= last]
+        near = candidates[bisect_left(lines, first) : bisect_right(lines, last)]
         without = {token for each in near for token in each}
         if near and not _is_read_alike(snapshot, first, last, statements, without):
             without = set()
