@@ -8,7 +8,7 @@ from scenic.compiler import tree as scenic
 from scenic.compiler.semantics.classes import Classes
 from scenic.compiler.semantics.model import Model
 from scenic.compiler.semantics.modules import Module
-from scenic.compiler.semantics.symbols import Symbol, SymbolKind, symbol_of_binding
+from scenic.compiler.semantics.symbols import DEFINITIONS, Symbol, SymbolKind, symbol_of_binding
 from scenic.compiler.traversal import parts, walk
 from scenic.dataclass import dataclass
 from scenic.ide.inheritance import subclasses
@@ -34,14 +34,6 @@ _CALLABLE = (
     SymbolKind.BEHAVIOR,
     SymbolKind.MONITOR,
     SymbolKind.SCENARIO,
-)
-_DEFINITIONS = (
-    ast.FunctionDef,
-    ast.AsyncFunctionDef,
-    ast.ClassDef,
-    scenic.BehaviorDef,
-    scenic.MonitorDef,
-    scenic.ScenarioDef,
 )
 
 
@@ -120,7 +112,7 @@ def _calls(node: ast.AST) -> Iterator[ast.expr]:
     pending = [node]
     while pending:
         part = pending.pop()
-        if part is not node and isinstance(part, _DEFINITIONS):
+        if part is not node and isinstance(part, DEFINITIONS):
             continue
         pending += reversed(parts(part))
         if isinstance(part, ast.Call):
@@ -138,7 +130,7 @@ def _is_called(module: Module, span: Span) -> bool:
 
 def _called_spans(module: Module) -> frozenset[tuple[int, int]]:
     spans = set()
-    inner = (node for node in walk(module.tree) if isinstance(node, _DEFINITIONS))
+    inner = (node for node in walk(module.tree) if isinstance(node, DEFINITIONS))
     for function in (call for node in (module.tree, *inner) for call in _calls(node)):
         span = (
             module.attribute_span(function)
@@ -154,7 +146,7 @@ def _around(module: Module, span: Span) -> Symbol:
     place = (span.line, module.source.byte(span.line, span.column))
     inner: Any = None
     for node in walk(module.tree):
-        if isinstance(node, _DEFINITIONS):
+        if isinstance(node, DEFINITIONS):
             start, end = (node.lineno, node.col_offset), (node.end_lineno or 0, node.end_col_offset or 0)
             if start <= place < end:
                 inner = node

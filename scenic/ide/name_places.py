@@ -3,20 +3,11 @@
 import ast
 from typing import Any
 
-from scenic.compiler import tree as scenic
+from scenic.compiler.semantics.symbols import DEFINITIONS
 from scenic.ide.snapshot import Snapshot
 from scenic.language.spans import Span
 
 __all__ = ["name_span", "span_of"]
-
-_DEFINITIONS = (
-    ast.FunctionDef,
-    ast.AsyncFunctionDef,
-    ast.ClassDef,
-    scenic.BehaviorDef,
-    scenic.MonitorDef,
-    scenic.ScenarioDef,
-)
 
 
 def span_of(snapshot: Snapshot, node: ast.AST) -> Span:
@@ -44,7 +35,7 @@ def name_span(snapshot: Snapshot, node: Any, name: str | None = None) -> Span:
     if not isinstance(name_wanted, str):
         return whole
     # A decorator may hold the same word: the line of the definition begins after it.
-    return _word(snapshot, node, name_wanted, last=False, skip=isinstance(node, _DEFINITIONS)) or whole
+    return _word(snapshot, node, name_wanted, last=False, skip=isinstance(node, DEFINITIONS)) or whole
 
 
 def _word(snapshot: Snapshot, node: Any, word: str, *, last: bool, skip: bool = False) -> Span | None:
