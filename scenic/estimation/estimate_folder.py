@@ -4,10 +4,15 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from scenic.batch.folders.folder import NAME
-from scenic.falsification.search_folder import ESTIMATE, EstimateFolderError, RunsFolder, kind_of, read_rows
+from scenic.falsification.search_folder import (
+    ESTIMATE,
+    EstimateFolderError,
+    RunsFolder,
+    folders_of,
+    read_rows,
+)
 
-__all__ = ["EstimateFolder", "EstimateFolderError", "estimates_in", "is_estimate", "joined", "manifest_of"]
+__all__ = ["EstimateFolder", "EstimateFolderError", "estimates_in", "joined", "manifest_of"]
 
 
 _ASKED: Final = "asked"
@@ -55,22 +60,14 @@ class EstimateFolder(RunsFolder):
         return {**super()._gone_on(earlier), _ASKED: self.asked}
 
 
-def is_estimate(folder: Path) -> bool:
-    """Return whether a folder holds an estimate."""
-    return kind_of(folder) is ESTIMATE
-
-
 def manifest_of(folder: Path) -> dict[str, Any]:
     """The manifest of an estimate; raises `EstimateFolderError` if there is none."""
     return ESTIMATE.document(folder)
 
 
 def estimates_in(folder: Path) -> list[Path]:
-    """The folder of an estimate itself, or those of the settings of a sweep that it holds."""
-    if is_estimate(folder):
-        return [folder]
-    inner = [manifest.parent for manifest in folder.glob(f"*/{NAME}") if is_estimate(manifest.parent)]
-    return sorted(inner, key=lambda item: (len(item.name), item.name))
+    """Return the folder of an estimate itself, or those of the settings of a sweep that it holds."""
+    return folders_of(folder, ESTIMATE)
 
 
 def joined(folders: Sequence[Path]) -> tuple[dict[str, Any], list[dict[str, Any]]]:

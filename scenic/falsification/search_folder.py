@@ -20,7 +20,6 @@ __all__ = [
     "SearchFolder",
     "SearchFolderError",
     "folders_of",
-    "is_search",
     "kind_of",
     "manifest_of",
     "number",
@@ -190,11 +189,6 @@ class SearchFolder(RunsFolder):
         super().__init__(path, SEARCH, settings, resume=resume, accept_changes=accept_changes)
 
 
-def is_search(folder: Path) -> bool:
-    """Return whether a folder holds a search."""
-    return kind_of(folder) is SEARCH
-
-
 def manifest_of(folder: Path) -> dict[str, Any]:
     """The manifest of a search; raises `SearchFolderError` if there is none."""
     if not (folder / NAME).exists():
@@ -204,13 +198,13 @@ def manifest_of(folder: Path) -> dict[str, Any]:
     return SEARCH.document(folder)
 
 
-def folders_of(folder: Path) -> list[Path]:
-    """The folder of a search itself, or those of the searches of a sweep that it holds."""
-    if is_search(folder):
+def folders_of(folder: Path, kind: FolderKind = SEARCH) -> list[Path]:
+    """Return a folder of runs of a kind itself, or those of the settings of a sweep that it holds."""
+    if kind_of(folder) is kind:
         return [folder]
-    searches = [manifest.parent for manifest in folder.glob(f"*/{NAME}") if is_search(manifest.parent)]
+    inner = [manifest.parent for manifest in folder.glob(f"*/{NAME}") if kind_of(manifest.parent) is kind]
     # So that n=9 comes before n=16.
-    return sorted(searches, key=lambda item: (len(item.name), item.name))
+    return sorted(inner, key=lambda item: (len(item.name), item.name))
 
 
 def read_rows(folder: Path, first: int = 0) -> list[dict[str, Any]]:
