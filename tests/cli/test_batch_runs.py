@@ -1,4 +1,4 @@
-"""What a terminal is told while a batch runs."""
+"""Messages to a terminal while a batch runs."""
 
 import sys
 import time

@@ -105,7 +105,7 @@ class MotionPlan:
 
 
 class Pace:
-    """When a car is where on its way.
+    """The places of a car on its way over time.
 
     Args:
         along: metres ``(n,)`` ahead of the car; the first are 0.

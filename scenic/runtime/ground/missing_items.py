@@ -42,7 +42,7 @@ def missing_item(error: BaseException, context: Context | None) -> str | None:
 
 
 def _container(text: str) -> ast.expr | None:
-    """The list or dictionary of whose items a text names one."""
+    """Return the list or dictionary in the text of a subscription; ``None`` for any other text."""
     try:
         expression = ast.parse(text.strip(), mode="eval").body
     except SyntaxError:

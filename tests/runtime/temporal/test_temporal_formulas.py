@@ -216,7 +216,7 @@ def test_an_exception_counts_only_where_nothing_else_decides() -> None:
 
 
 def test_exceptions_count_in_later_states_as_in_the_first() -> None:
-    """What a monitor keeps of steps that went well changes nothing where an atom fails."""
+    """Steps that a monitor has kept change no verdict where an atom fails."""
     generator = random.Random(4)
 
     def evaluate(state: tuple[bool | None, ...], index: int) -> bool:
