@@ -93,6 +93,12 @@ class MeshSurface:
         ]
 
 
+def category_of(thing: SceneObject, class_name: str) -> str:
+    """Return the class of an object in labels: its property ``category`` where that is text, else the name of its class."""
+    value = thing.properties.get("category")
+    return value if isinstance(value, str) and value else class_name
+
+
 @dataclass(frozen=True, slots=True)
 class MeshInstance:
     """One object as it is drawn: a surface with a place, a rotation ``(x, y, z, w)``, a size and a colour."""
@@ -111,9 +117,8 @@ class MeshInstance:
 
     @property
     def category(self) -> str:
-        """The class of the object in labels: its property ``category`` where that is text, else the name of its class."""
-        value = self.thing.properties.get("category")
-        return value if isinstance(value, str) and value else self.class_name
+        """The class of the object in labels; see `category_of`."""
+        return category_of(self.thing, self.class_name)
 
     @property
     def label(self) -> str:

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from scenic.dataclass import dataclass
-from scenic.formats.mesh_instances import PALETTE
+from scenic.formats.mesh_instances import PALETTE, category_of
 from scenic.formats.poses import Four, Triple, quaternion_of
 from scenic.formats.scene_cameras import Viewpoint, sensor_viewpoint
 from scenic.formats.scene_protocols import Scene, SceneObject
@@ -109,9 +109,8 @@ class Solid:
 
     @property
     def category(self) -> str:
-        """Its class in labels: the property ``category`` if that is text, else the name of its class."""
-        value = self.thing.properties.get("category")
-        return value if isinstance(value, str) and value else self.class_name
+        """The class of the object in labels; see `category_of`."""
+        return category_of(self.thing, self.class_name)
 
     @property
     def is_rendered(self) -> bool:
